@@ -1,0 +1,117 @@
+"""What is measured on: images, pairs of images and what is known to be true about them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Geometry = Literal["homography", "epipolar"]
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """A decoded image.
+
+    Parameters
+    ----------
+    bgr : (H, W, 3) uint8
+        Blue, green, red; a gray source has three equal channels.
+    valid : (H, W) bool or None
+        False where the picture has no content (the border that a warp leaves); None: all valid.
+    """
+
+    bgr: NDArray[np.uint8]
+    valid: NDArray[np.bool_] | None = None
+
+
+class ImageSource(Protocol):
+    """Where an image comes from: a file, or a recipe applied to another source."""
+
+    def read(self) -> Pixels:
+        """Decode the image.
+
+        Raises
+        ------
+        ImageError
+            If it cannot be decoded whole.
+        """
+
+    def content_key(self) -> str:
+        """Hexadecimal hash of the content and of everything that changes the pixels."""
+
+    def is_gray(self) -> bool:
+        """Whether the source has a single channel (read from its header, not its pixels)."""
+
+
+@dataclass(frozen=True)
+class GpsPosition:
+    """A WGS84 position: latitude and longitude in degrees, altitude in metres."""
+
+    latitude: float
+    longitude: float
+    altitude: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """One image of a dataset; pixels are decoded on demand.
+
+    ``name`` is unique in its dataset (a path relative to it, with ``/``).
+    """
+
+    name: str
+    source: ImageSource
+    gps: GpsPosition | None = None
+
+    def read(self) -> Pixels:
+        return self.source.read()
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Two images to be matched.
+
+    Parameters
+    ----------
+    index : int
+        0-based position among the pairs of the dataset.
+    image_1, image_2 : str
+        Names of the images.
+    sequence : str
+        The scene, sequence, project or kind of transformation that the pair belongs to.
+    homography : (3, 3) float64 or None
+        Maps pixels of image 1 to pixels of image 2 (pixel centres at integers), at the size at
+        which the images are read.
+    """
+
+    index: int
+    image_1: str
+    image_2: str
+    sequence: str
+    homography: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Dataset:
+    """Images and the pairs of them that are matched.
+
+    ``geometry`` names the model that relates two images: a homography (plane or rotation) or
+    epipolar geometry. ``settings`` records how the dataset was made (pairs, size, equalisation).
+    """
+
+    name: str
+    images: Sequence[Image]
+    pairs: Sequence[Pair]
+    geometry: Geometry
+    settings: tuple[tuple[str, str], ...] = ()
+
+    def image(self, name: str) -> Image:
+        """The image called `name`; KeyError where there is none."""
+        for image in self.images:
+            if image.name == name:
+                return image
+        raise KeyError(name)

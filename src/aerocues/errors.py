@@ -1,0 +1,31 @@
+"""The errors that aerocues raises on purpose. Each message ends with what to do next."""
+
+from __future__ import annotations
+
+
+class AerocuesError(Exception):
+    """Base of every error that a user can act on; the command line prints it in one line."""
+
+
+class SelectionError(AerocuesError):
+    """A combination, method or preset was named that does not exist or cannot be used."""
+
+
+class DatasetError(AerocuesError):
+    """A dataset is missing, incomplete or of the wrong form."""
+
+
+class ImageError(DatasetError):
+    """An image cannot be read, is truncated, too large or of an unknown format."""
+
+
+class MethodUnavailableError(AerocuesError):
+    """A method exists but what it needs (a package, a build option of OpenCV) does not."""
+
+
+class StoreError(AerocuesError):
+    """A results folder cannot be read or written."""
+
+
+class EngineError(AerocuesError):
+    """The workers that measure could not be started or kept alive."""

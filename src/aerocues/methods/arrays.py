@@ -1,0 +1,119 @@
+"""Keypoints, features and matches as plain arrays: what every method takes and returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float32Array = NDArray[np.float32]
+Int32Array = NDArray[np.int32]
+DescriptorArray = NDArray[np.uint8] | NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Keypoints:
+    """Keypoints of one image.
+
+    Parameters
+    ----------
+    xy : (N, 2) float32
+        Pixels; the centre of the top-left pixel is (0, 0), x to the right, y down.
+    size, angle, response : (N,) float32
+        Diameter in pixels; orientation in degrees clockwise, -1 where there is none; strength.
+    octave, class_id : (N,) int32
+        As OpenCV defines them (SIFT packs octave, layer and sub-layer into ``octave``).
+    """
+
+    xy: Float32Array
+    size: Float32Array
+    angle: Float32Array
+    response: Float32Array
+    octave: Int32Array
+    class_id: Int32Array
+
+    def __post_init__(self) -> None:
+        if self.xy.ndim != 2 or self.xy.shape[1] != 2:
+            raise ValueError(f"xy must have shape (N, 2), not {self.xy.shape}")
+        for name in ("size", "angle", "response", "octave", "class_id"):
+            if getattr(self, name).shape != (len(self.xy),):
+                raise ValueError(f"{name} must have shape ({len(self.xy)},)")
+
+    def __len__(self) -> int:
+        return len(self.xy)
+
+    @classmethod
+    def from_xy(cls, xy: NDArray[np.floating], size: float = 31.0) -> Keypoints:
+        """Keypoints of which only the positions are known; the rest takes neutral values."""
+        points = np.ascontiguousarray(xy, dtype=np.float32).reshape(-1, 2)
+        count = len(points)
+        return cls(
+            xy=points,
+            size=np.full(count, size, np.float32),
+            angle=np.full(count, -1, np.float32),
+            response=np.zeros(count, np.float32),
+            octave=np.zeros(count, np.int32),
+            class_id=np.full(count, -1, np.int32),
+        )
+
+    def take(self, which: NDArray[np.bool_] | NDArray[np.integer]) -> Keypoints:
+        """The keypoints selected by a mask or by indices, in that order."""
+        return Keypoints(
+            self.xy[which],
+            self.size[which],
+            self.angle[which],
+            self.response[which],
+            self.octave[which],
+            self.class_id[which],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """Keypoints with one descriptor each: the keypoints that the descriptor returned.
+
+    Parameters
+    ----------
+    keypoints : Keypoints
+        N keypoints.
+    descriptors : (N, D) uint8 or float32
+    """
+
+    keypoints: Keypoints
+    descriptors: DescriptorArray
+
+    def __post_init__(self) -> None:
+        if self.descriptors.ndim != 2 or len(self.descriptors) != len(self.keypoints):
+            raise ValueError(
+                f"{len(self.keypoints)} keypoints need descriptors of shape "
+                f"({len(self.keypoints)}, D), not {self.descriptors.shape}"
+            )
+
+    def __len__(self) -> int:
+        return len(self.keypoints)
+
+
+@dataclass(frozen=True, eq=False)
+class Matches:
+    """Mutual matches between two sets of features.
+
+    Parameters
+    ----------
+    indices : (M, 2) int32
+        Row in the first and in the second features.
+    distance : (M,) float32
+        Descriptor distance; its unit is that of the norm.
+    """
+
+    indices: Int32Array = field(default_factory=lambda: np.empty((0, 2), np.int32))
+    distance: Float32Array = field(default_factory=lambda: np.empty(0, np.float32))
+
+    def __post_init__(self) -> None:
+        if self.indices.ndim != 2 or self.indices.shape[1] != 2:
+            raise ValueError(f"indices must have shape (M, 2), not {self.indices.shape}")
+        if self.distance.shape != (len(self.indices),):
+            raise ValueError(f"distance must have shape ({len(self.indices)},)")
+
+    def __len__(self) -> int:
+        return len(self.indices)
