@@ -1,0 +1,76 @@
+# `make` alone lists the targets. Only Python 3.11 to 3.13 and make are needed.
+
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+
+# The first interpreter of a supported version that really starts.
+SUPPORTED := import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
+FIND_PYTHON = for name in python3 python3.13 python3.12 python3.11; do \
+	if "$$name" -c '$(SUPPORTED)' 2>/dev/null; then echo "$$name"; break; fi; done
+
+DEMO_RESULTS := demo-results
+DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,KAZE-KAZE-L2-BF,ORB-ORB-HAM-*,ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,GFTT-BRIEF-HAM-BF,STAR-DAISY-L2-BF
+
+# Extra arguments for pytest, for instance: make test PYTEST_ARGUMENTS="-k synthetic"
+PYTEST_ARGUMENTS :=
+
+OLDEST_VENV := .venv-oldest
+OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
+OLDEST_TOOLS := pytest|pytest-timeout|pytest-xdist|hypothesis|pillow|psutil
+OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help setup demo test test-slow test-oldest-opencv lint bench lock clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(INSTALLED) ## make .venv and install everything at the locked versions
+
+$(BIN)/python:
+	@python=$$($(FIND_PYTHON)); \
+	if [ -z "$$python" ]; then echo "error: no Python 3.11 to 3.13 found; install one" >&2; exit 1; fi; \
+	"$$python" -m venv $(VENV)
+
+$(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	@touch $@
+
+demo: setup ## measure a choice of combinations on the built-in images (under 3 minutes)
+	$(BIN)/aerocues run synthetic -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+
+test: setup ## the fast tests
+	$(BIN)/pytest -n 2 -m "not slow" $(PYTEST_ARGUMENTS)
+
+test-slow: setup ## the tests that take more than a few seconds each
+	$(BIN)/pytest -m slow $(PYTEST_ARGUMENTS)
+
+test-oldest-opencv: $(OLDEST_INSTALLED) ## the tests of the methods with the oldest supported OpenCV
+	$(OLDEST_VENV)/bin/pytest tests/methods -n 2 -m "not slow" $(PYTEST_ARGUMENTS)
+
+$(OLDEST_INSTALLED): $(INSTALLED)
+	$(BIN)/python -m venv --clear $(OLDEST_VENV)
+	$(OLDEST_VENV)/bin/python -m pip install --quiet $(OLDEST_OPENCV) \
+		$$(sed -nE 's/^(($(OLDEST_TOOLS))==[^ ]+).*/\1/p' requirements.lock)
+	@echo "$(CURDIR)/src" > "$$($(OLDEST_VENV)/bin/python -c 'import site; print(site.getsitepackages()[0])')/aerocues.pth"
+	@touch $@
+
+lint: setup ## style, types and the direction of imports
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: setup ## the benchmarks of the framework itself
+	@for benchmark in benchmarks/*.py; do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
+
+lock: setup ## pin the newest allowed versions in requirements.lock (needs uv)
+	uv pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 \
+		--generate-hashes --no-emit-index-url --no-header --upgrade --output-file requirements.lock
+
+clean: ## remove everything that the other targets made
+	rm -rf $(VENV) $(OLDEST_VENV) $(DEMO_RESULTS) .coverage .coverage.* build dist
+	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
