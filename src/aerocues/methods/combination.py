@@ -1,0 +1,48 @@
+"""A combination of detector, descriptor, norm and matcher, and its text form."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from aerocues.errors import SelectionError
+
+METHOD_NAME = re.compile(r"[A-Z0-9_]+")
+
+
+@dataclass(frozen=True, order=True)
+class Combination:
+    """What is evaluated: ``ORB-BEBLID-HAM-BF`` reads detector, descriptor, norm, matcher."""
+
+    detector: str
+    descriptor: str
+    norm: str
+    matcher: str
+
+    def __post_init__(self) -> None:
+        for name in (self.detector, self.descriptor, self.norm, self.matcher):
+            if not METHOD_NAME.fullmatch(name):
+                raise SelectionError(
+                    f"{name!r} is no method name; names consist of A-Z, 0-9 and _ "
+                    "(see 'aerocues methods')"
+                )
+
+    def __str__(self) -> str:
+        return f"{self.detector}-{self.descriptor}-{self.norm}-{self.matcher}"
+
+    @classmethod
+    def parse(cls, text: str) -> Combination:
+        """Read the text form, in any case.
+
+        Raises
+        ------
+        SelectionError
+            If `text` does not have four parts.
+        """
+        parts = text.strip().upper().split("-")
+        if len(parts) != 4:
+            raise SelectionError(
+                f"{text!r} is no combination; write DETECTOR-DESCRIPTOR-NORM-MATCHER, "
+                "such as ORB-BEBLID-HAM-BF"
+            )
+        return cls(*parts)

@@ -1,0 +1,110 @@
+"""Which combinations cannot run, which run but mean nothing, and why: one rule a row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from aerocues.methods.combination import Combination
+from aerocues.methods.descriptors import DescriptorRow
+from aerocues.methods.matchers import MatcherRow
+from aerocues.methods.registry import Methods
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One cause of incompatibility; ``reason`` gives None where it does not apply."""
+
+    cause: str
+    reason: Callable[[Combination, DescriptorRow, MatcherRow], str | None]
+
+
+def _foreign_keypoints(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    allowed = descriptor.only_detectors
+    if not allowed or combination.detector in allowed:
+        return None
+    return (
+        f"the {descriptor.name} descriptor needs what only keypoints of {' or '.join(allowed)} "
+        f"carry, not those of {combination.detector}"
+    )
+
+
+def _breaking_keypoints(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    return descriptor.not_detectors.get(combination.detector)
+
+
+def _norm_and_type(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    allowed = matcher.dtypes.get(combination.norm, ())
+    if descriptor.dtype in allowed:
+        return None
+    if not allowed:
+        return f"the matcher {matcher.name} does not know the norm {combination.norm}"
+    if combination.norm == "HAM":
+        return (
+            f"the Hamming norm compares bits, but {descriptor.name} descriptors are "
+            f"{descriptor.dtype} numbers; use L2"
+        )
+    return (
+        f"{matcher.name} under {combination.norm} needs {' or '.join(allowed)} descriptors, but "
+        f"{descriptor.name} descriptors are {descriptor.dtype}; use HAM"
+    )
+
+
+RULES: tuple[Rule, ...] = (
+    Rule("descriptor needs its own keypoints", _foreign_keypoints),
+    Rule("keypoints break the descriptor", _breaking_keypoints),
+    Rule("norm or matcher does not fit the descriptor's type", _norm_and_type),
+)
+
+
+def incompatibility(combination: Combination, methods: Methods) -> tuple[str, str] | None:
+    """The cause and the reason why `combination` cannot run, or None if it can.
+
+    Raises
+    ------
+    SelectionError
+        If one of the four names does not exist.
+    """
+    methods.require(combination)
+    descriptor = methods.descriptors[combination.descriptor]
+    matcher = methods.matchers[combination.matcher]
+    for rule in RULES:
+        reason = rule.reason(combination, descriptor, matcher)
+        if reason is not None:
+            return rule.cause, reason
+    return None
+
+
+def why_incompatible(combination: Combination, methods: Methods) -> str | None:
+    """Why `combination` cannot run, or None if it can."""
+    found = incompatibility(combination, methods)
+    return found[1] if found else None
+
+
+def why_meaningless(combination: Combination, methods: Methods) -> str | None:
+    """Why the figures of a runnable `combination` mean nothing, or None if they do."""
+    descriptor = methods.descriptors[combination.descriptor]
+    if combination.norm == "L2" and descriptor.bit_string:
+        return (
+            f"{descriptor.name} descriptors are strings of bits, on which the Euclidean distance "
+            "of bytes means nothing; use HAM"
+        )
+    return None
+
+
+def why_unavailable(combination: Combination, methods: Methods) -> str | None:
+    """Why a method of `combination` cannot be used on this machine, or None if all can."""
+    for row in (
+        methods.detectors[combination.detector],
+        methods.descriptors[combination.descriptor],
+        methods.matchers[combination.matcher],
+    ):
+        if row.unavailable:
+            return f"{row.name} is unavailable: {row.unavailable}"
+    return None

@@ -1,0 +1,243 @@
+"""The detectors of OpenCV, one row each. Parameters are those of the thesis (OpenCV 4.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from aerocues.methods.parameters import OPENCV, Value
+
+
+@dataclass(frozen=True)
+class DetectorRow:
+    """One detector.
+
+    Parameters
+    ----------
+    name : str
+        As it stands in a combination, upper case.
+    factory : str
+        Class in ``cv2`` or ``cv2.xfeatures2d`` whose ``create`` makes the detector; for a plug-in
+        its entry point, ``module:attribute``.
+    parameters : mapping
+        Keyword arguments of ``create``; ``"KAZE.DIFF_PM_G2"`` names a constant of a class.
+    reference : str
+        Where the method was published.
+    keypoints_per_megapixel : float
+        Typical yield on aerial images, used only to estimate the cost of work before it is done.
+    seconds_per_megapixel : float
+        Typical time, for the same use.
+    unstable : bool
+        Whether it is known to corrupt the memory of its process: it then gets a process of its own.
+    origin : str
+        ``opencv`` or the name of the distribution that brings it.
+    unavailable : str or None
+        Why it cannot be used here.
+    """
+
+    name: str
+    factory: str
+    parameters: Mapping[str, Value] = field(repr=False)
+    reference: str
+    keypoints_per_megapixel: float = 10_000
+    seconds_per_megapixel: float = 0.5
+    unstable: bool = False
+    origin: str = OPENCV
+    unavailable: str | None = None
+
+
+DETECTORS: tuple[DetectorRow, ...] = (
+    DetectorRow(
+        "SIFT",
+        "SIFT",
+        {
+            "nfeatures": 30000,
+            "nOctaveLayers": 3,
+            "contrastThreshold": 0.04,
+            "edgeThreshold": 10.0,
+            "sigma": 1.6,
+        },
+        "Lowe, Distinctive image features from scale-invariant keypoints, IJCV 2004",
+        8_000,
+        0.25,
+    ),
+    DetectorRow(
+        "AKAZE",
+        "AKAZE",
+        {
+            "descriptor_type": "AKAZE.DESCRIPTOR_MLDB",
+            "descriptor_size": 0,
+            "descriptor_channels": 3,
+            "threshold": 0.001,
+            "nOctaves": 4,
+            "nOctaveLayers": 4,
+            "diffusivity": "KAZE.DIFF_PM_G2",
+            "max_points": -1,
+        },
+        "Alcantarilla et al., Fast explicit diffusion for accelerated features, BMVC 2013",
+        3_500,
+        0.15,
+    ),
+    DetectorRow(
+        "ORB",
+        "ORB",
+        {
+            "nfeatures": 30000,
+            "scaleFactor": 1.2,
+            "nlevels": 6,
+            "edgeThreshold": 31,
+            "firstLevel": 0,
+            "WTA_K": 2,
+            "scoreType": "ORB.HARRIS_SCORE",
+            "patchSize": 31,
+            "fastThreshold": 20,
+        },
+        "Rublee et al., ORB: an efficient alternative to SIFT or SURF, ICCV 2011",
+        25_000,
+        0.04,
+    ),
+    DetectorRow(
+        "BRISK",
+        "BRISK",
+        {"thresh": 30, "octaves": 3, "patternScale": 1.0},
+        "Leutenegger et al., BRISK: binary robust invariant scalable keypoints, ICCV 2011",
+        12_000,
+        0.3,
+    ),
+    DetectorRow(
+        "KAZE",
+        "KAZE",
+        {
+            "extended": False,
+            "upright": False,
+            "threshold": 0.003,
+            "nOctaves": 3,
+            "nOctaveLayers": 5,
+            "diffusivity": "KAZE.DIFF_CHARBONNIER",
+        },
+        "Alcantarilla et al., KAZE features, ECCV 2012",
+        2_000,
+        1.0,
+    ),
+    DetectorRow(
+        "FAST",
+        "FastFeatureDetector",
+        {"threshold": 5, "nonmaxSuppression": True, "type": "FastFeatureDetector.TYPE_5_8"},
+        "Rosten and Drummond, Machine learning for high-speed corner detection, ECCV 2006",
+        20_000,
+        0.01,
+    ),
+    DetectorRow(
+        "MSER",
+        "MSER",
+        {
+            "delta": 5,
+            "min_area": 20,
+            "max_area": 2000,
+            "max_variation": 0.15,
+            "min_diversity": 0.20,
+            "max_evolution": 350,
+            "area_threshold": 1.01,
+            "min_margin": 0.003,
+            "edge_blur_size": 5,
+        },
+        "Matas et al., Robust wide-baseline stereo from maximally stable extremal regions, "
+        "BMVC 2002",
+        2_000,
+        0.6,
+    ),
+    DetectorRow(
+        "AGAST",
+        "AgastFeatureDetector",
+        {"threshold": 20, "nonmaxSuppression": True, "type": "AgastFeatureDetector.AGAST_5_8"},
+        "Mair et al., Adaptive and generic corner detection based on the accelerated segment "
+        "test, ECCV 2010",
+        15_000,
+        0.01,
+    ),
+    DetectorRow(
+        "GFTT",
+        "GFTTDetector",
+        {
+            "maxCorners": 30000,
+            "qualityLevel": 0.01,
+            "minDistance": 1.0,
+            "blockSize": 3,
+            "useHarrisDetector": False,
+            "k": 0.04,
+        },
+        "Shi and Tomasi, Good features to track, CVPR 1994",
+        25_000,
+        0.03,
+    ),
+    DetectorRow(
+        "GFTT_H",
+        "GFTTDetector",
+        {
+            "maxCorners": 30000,
+            "qualityLevel": 0.01,
+            "minDistance": 1.0,
+            "blockSize": 3,
+            "useHarrisDetector": True,
+            "k": 0.04,
+        },
+        "Harris and Stephens, A combined corner and edge detector, AVC 1988",
+        5_000,
+        0.03,
+    ),
+    DetectorRow(
+        "STAR",
+        "StarDetector",
+        {
+            "maxSize": 15,
+            "responseThreshold": 5,
+            "lineThresholdProjected": 60,
+            "lineThresholdBinarized": 30,
+            "suppressNonmaxSize": 3,
+        },
+        "Agrawal et al., CenSurE: center surround extremas, ECCV 2008",
+        10_000,
+        0.03,
+    ),
+    DetectorRow(
+        "HL",
+        "HarrisLaplaceFeatureDetector",
+        {
+            "numOctaves": 3,
+            "corn_thresh": 0.004,
+            "DOG_thresh": 0.004,
+            "maxCorners": 30000,
+            "num_layers": 2,
+        },
+        "Mikolajczyk and Schmid, Scale and affine invariant interest point detectors, IJCV 2004",
+        15_000,
+        3.0,
+    ),
+    DetectorRow(
+        "MSD",
+        "MSDDetector",
+        {
+            "m_patch_radius": 3,
+            "m_search_area_radius": 5,
+            "m_nms_radius": 5,
+            "m_nms_scale_radius": 0,
+            "m_th_saliency": 100.0,
+            "m_kNN": 4,
+            "m_scale_factor": 1.25,
+            "m_n_scales": -1,
+            "m_compute_orientation": 0,
+        },
+        "Tombari and Di Stefano, Interest points via maximal self-dissimilarities, ACCV 2014",
+        5_000,
+        4.0,
+    ),
+    DetectorRow(
+        "TBMR",
+        "TBMR",
+        {"min_area": 30, "max_area_relative": 0.01, "scale_factor": 1.25, "n_scales": 2},
+        "Xu et al., Tree-based Morse regions, IEEE TIP 2014",
+        7_000,
+        0.5,
+        unstable=True,
+    ),
+)

@@ -1,0 +1,48 @@
+"""What a third-party method implements: arrays in, arrays out.
+
+A package offers a method through an entry point in one of the groups ``aerocues.detectors``,
+``aerocues.descriptors``, ``aerocues.extractors`` (detector and descriptor in one) and
+``aerocues.matchers``. The entry point's name, in upper case, is the method's name; its object is
+called with the method's parameters (none by default) and returns an object of the kind below.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.methods.arrays import Features, Keypoints, Matches
+
+
+class Detector(Protocol):
+    """Finds keypoints."""
+
+    def detect(self, image: NDArray[np.uint8]) -> Keypoints:
+        """Keypoints of `image`, (H, W, 3) uint8 in BGR order."""
+
+
+class Descriptor(Protocol):
+    """Describes keypoints. Its class states ``dtype``: ``"uint8"`` (bits) or ``"float32"``."""
+
+    def describe(self, image: NDArray[np.uint8], keypoints: Keypoints) -> Features:
+        """Features of `keypoints`; those that cannot be described are left out."""
+
+
+class Extractor(Protocol):
+    """Detects and describes in one call. Its class states ``dtype``, as a descriptor's does."""
+
+    def extract(self, image: NDArray[np.uint8]) -> Features:
+        """Features of `image`, (H, W, 3) uint8 in BGR order."""
+
+
+class Matcher(Protocol):
+    """Matches features one to one.
+
+    Its class states ``dtypes``: for each norm that it knows, the types of descriptors that it
+    takes, such as ``{"L2": ("float32",)}``.
+    """
+
+    def match(self, features_1: Features, features_2: Features, norm: str) -> Matches:
+        """Mutual matches: each feature takes part in one match at most."""

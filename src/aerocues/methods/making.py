@@ -1,0 +1,147 @@
+"""From rows of the tables to objects that detect, describe and match."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import MethodUnavailableError
+from aerocues.methods.arrays import DescriptorArray, Features, Keypoints, Matches
+from aerocues.methods.opencv import (
+    BruteForceMatcher,
+    FlannMatcher,
+    OpenCVDescriptor,
+    OpenCVDetector,
+)
+from aerocues.methods.parameters import OPENCV
+from aerocues.methods.plugins import load_factory
+from aerocues.methods.registry import Methods
+
+
+class DetectorStage(Protocol):
+    """A detector whose ``call`` is timed apart from the conversion of its result."""
+
+    def call(self, image: NDArray[np.uint8]) -> Any: ...
+    def read(self, raw: Any) -> Keypoints: ...
+
+
+class DescriptorStage(Protocol):
+    """A descriptor whose ``call`` is timed apart from the conversions around it."""
+
+    def prepare(self, keypoints: Keypoints) -> Any: ...
+    def call(self, image: NDArray[np.uint8], prepared: Any) -> Any: ...
+    def read(self, raw: Any) -> Features: ...
+
+
+class MatcherStage(Protocol):
+    """A matcher whose ``call`` is timed apart from the conversion of its result."""
+
+    def call(self, features_1: Features, features_2: Features) -> Any: ...
+    def read(self, raw: Any) -> Matches: ...
+
+
+@dataclass(frozen=True, eq=False)
+class ExtractedKeypoints(Keypoints):
+    """Keypoints of an extractor, which bring their descriptors along."""
+
+    descriptors: DescriptorArray
+
+    def take(self, which: NDArray[np.bool_] | NDArray[np.integer]) -> ExtractedKeypoints:
+        kept = super().take(which)
+        return ExtractedKeypoints(**vars(kept), descriptors=self.descriptors[which])
+
+
+class ArrayDetector:
+    """A third-party detector or extractor."""
+
+    def __init__(self, native: Any) -> None:
+        self._call = native.extract if hasattr(native, "extract") else native.detect
+
+    def call(self, image: NDArray[np.uint8]) -> Any:
+        return self._call(image)
+
+    def read(self, raw: Any) -> Keypoints:
+        if isinstance(raw, Features):
+            return ExtractedKeypoints(**vars(raw.keypoints), descriptors=raw.descriptors)
+        if not isinstance(raw, Keypoints):
+            raise TypeError(f"a detector returns Keypoints, not {type(raw).__name__}")
+        return raw
+
+
+class ArrayDescriptor:
+    """A third-party descriptor, or the descriptors that an extractor found already."""
+
+    def __init__(self, native: Any, dtype: str) -> None:
+        self._native = native
+        self._dtype = dtype
+
+    def prepare(self, keypoints: Keypoints) -> Any:
+        return keypoints
+
+    def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
+        if isinstance(prepared, ExtractedKeypoints):
+            return Features(prepared, prepared.descriptors)
+        return self._native.describe(image, prepared)
+
+    def read(self, raw: Any) -> Features:
+        if not isinstance(raw, Features):
+            raise TypeError(f"a descriptor returns Features, not {type(raw).__name__}")
+        if raw.descriptors.dtype != self._dtype:
+            raise TypeError(f"descriptors of {raw.descriptors.dtype}, declared as {self._dtype}")
+        finite = np.isfinite(raw.descriptors).all(axis=1)
+        descriptors = np.ascontiguousarray(raw.descriptors[finite])
+        return Features(raw.keypoints.take(finite), descriptors)
+
+
+class ArrayMatcher:
+    """A third-party matcher."""
+
+    def __init__(self, native: Any, norm: str) -> None:
+        self._native = native
+        self._norm = norm
+
+    def call(self, features_1: Features, features_2: Features) -> Any:
+        return self._native.match(features_1, features_2, self._norm)
+
+    def read(self, raw: Any) -> Matches:
+        if not isinstance(raw, Matches):
+            raise TypeError(f"a matcher returns Matches, not {type(raw).__name__}")
+        for column in (0, 1):
+            if len(np.unique(raw.indices[:, column])) != len(raw):
+                raise ValueError("a matcher returned a feature twice; matches are one to one")
+        return raw
+
+
+def _plugin(factory: str, parameters: dict[str, Any]) -> Any:
+    try:
+        return load_factory(factory)(**parameters)
+    except ImportError as error:
+        raise MethodUnavailableError(f"{factory} needs what is not installed: {error}") from error
+
+
+def make_detector(methods: Methods, name: str) -> DetectorStage:
+    """Make the detector `name`; MethodUnavailableError where it cannot be made."""
+    row = methods.detectors[name]
+    if row.origin == OPENCV:
+        return OpenCVDetector(row)
+    return ArrayDetector(_plugin(row.factory, dict(row.parameters)))
+
+
+def make_descriptor(methods: Methods, name: str) -> DescriptorStage:
+    """Make the descriptor `name`; MethodUnavailableError where it cannot be made."""
+    row = methods.descriptors[name]
+    if row.origin == OPENCV:
+        return OpenCVDescriptor(row)
+    return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)
+
+
+def make_matcher(methods: Methods, name: str, norm: str) -> MatcherStage:
+    """Make the matcher `name` for a norm; MethodUnavailableError where it cannot be made."""
+    row = methods.matchers[name]
+    parameters = dict(row.parameters.get(norm, {}))
+    if row.origin != OPENCV:
+        return ArrayMatcher(_plugin(row.factory, parameters), norm)
+    return FlannMatcher(parameters) if name == "FLANN" else BruteForceMatcher(norm)

@@ -1,0 +1,89 @@
+"""All methods that can be combined: OpenCV's and those that plug-ins bring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
+from aerocues.methods.detectors import DETECTORS, DetectorRow
+from aerocues.methods.matchers import MATCHERS, NORMS, MatcherRow, NormRow
+from aerocues.methods.presets import Preset
+
+
+@dataclass(frozen=True)
+class Methods:
+    """The methods by name, in the order of the tables."""
+
+    detectors: Mapping[str, DetectorRow]
+    descriptors: Mapping[str, DescriptorRow]
+    norms: Mapping[str, NormRow]
+    matchers: Mapping[str, MatcherRow]
+
+    def combinations(self) -> Iterator[Combination]:
+        """Every combination that can be written down, runnable or not."""
+        for names in product(self.detectors, self.descriptors, self.norms, self.matchers):
+            yield Combination(*names)
+
+    def require(self, combination: Combination) -> None:
+        """Check that the four names exist.
+
+        Raises
+        ------
+        SelectionError
+            Naming the first one that does not.
+        """
+        for kind, name, known in (
+            ("detector", combination.detector, self.detectors),
+            ("descriptor", combination.descriptor, self.descriptors),
+            ("norm", combination.norm, self.norms),
+            ("matcher", combination.matcher, self.matchers),
+        ):
+            if name not in known:
+                raise SelectionError(f"there is no {kind} {name}; known are {', '.join(known)}")
+
+    def parameters(self, combination: Combination) -> dict[str, object]:
+        """Everything that decides what the methods of `combination` compute."""
+        detector = self.detectors[combination.detector]
+        descriptor = self.descriptors[combination.descriptor]
+        matcher = self.matchers[combination.matcher]
+        return {
+            "detector": [detector.origin, detector.factory, dict(detector.parameters)],
+            "descriptor": [descriptor.origin, descriptor.factory, dict(descriptor.parameters)],
+            "matcher": [
+                matcher.origin,
+                matcher.factory or matcher.name,
+                dict(matcher.parameters.get(combination.norm, {})),
+            ],
+            "norm": combination.norm,
+        }
+
+    def with_preset(self, preset: Preset) -> Methods:
+        """The same methods with the parameters that `preset` changes."""
+        preset.check(self.detectors, self.descriptors)
+        return replace(
+            self,
+            detectors={
+                name: replace(row, parameters={**row.parameters, **preset.detectors.get(name, {})})
+                for name, row in self.detectors.items()
+            },
+            descriptors={
+                name: replace(
+                    row, parameters={**row.parameters, **preset.descriptors.get(name, {})}
+                )
+                for name, row in self.descriptors.items()
+            },
+        )
+
+
+def opencv_methods() -> Methods:
+    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers."""
+    return Methods(
+        {row.name: row for row in DETECTORS},
+        {row.name: row for row in DESCRIPTORS},
+        {row.name: row for row in NORMS},
+        {row.name: row for row in MATCHERS},
+    )

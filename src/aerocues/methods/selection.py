@@ -1,0 +1,128 @@
+"""Choosing combinations by patterns such as ``ORB-*-HAM-BF,AKAZE-SIFT-*,!*-VGG-*``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+
+from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.compatibility import why_incompatible, why_meaningless, why_unavailable
+from aerocues.methods.registry import Methods
+
+WILDCARDS = frozenset("*?[")
+
+
+def _split(names: str | Iterable[str] | None) -> list[str]:
+    if names is None:
+        return []
+    parts = names.split(",") if isinstance(names, str) else list(names)
+    return [part.strip().upper() for part in parts if part.strip()]
+
+
+def runnable(methods: Methods) -> list[Combination]:
+    """Every combination that OpenCV or a plug-in can run here."""
+    return [
+        combination
+        for combination in methods.combinations()
+        if why_incompatible(combination, methods) is None
+        and why_unavailable(combination, methods) is None
+    ]
+
+
+def meaningful(methods: Methods) -> list[Combination]:
+    """The runnable combinations whose figures mean something: the default selection."""
+    return [
+        combination
+        for combination in runnable(methods)
+        if why_meaningless(combination, methods) is None
+    ]
+
+
+def _unmatched(pattern: str, methods: Methods) -> SelectionError:
+    everything = list(methods.combinations())
+    matched = [text for text in everything if fnmatchcase(str(text), pattern)]
+    if matched:
+        first = matched[0]
+        reason = (
+            why_incompatible(first, methods)
+            or why_unavailable(first, methods)
+            or f"{why_meaningless(first, methods)} (--all runs it all the same)"
+        )
+        return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
+    close = get_close_matches(pattern, [str(text) for text in everything], n=3, cutoff=0.6)
+    hint = f"did you mean {', '.join(close)}?" if close else "see 'aerocues methods' for the names"
+    return SelectionError(f"no combination matches {pattern!r}; {hint}")
+
+
+def _by_component(
+    candidates: list[Combination], component: str, names: Sequence[str]
+) -> list[Combination]:
+    if not names:
+        return candidates
+    for name in names:
+        if not any(fnmatchcase(getattr(candidate, component), name) for candidate in candidates):
+            known = ", ".join(dict.fromkeys(getattr(c, component) for c in candidates))
+            raise SelectionError(f"no {component} {name} to select; there are {known}")
+    return [
+        candidate
+        for candidate in candidates
+        if any(fnmatchcase(getattr(candidate, component), name) for name in names)
+    ]
+
+
+def select(
+    methods: Methods,
+    patterns: str | Iterable[str] | None = None,
+    *,
+    detectors: str | Iterable[str] | None = None,
+    descriptors: str | Iterable[str] | None = None,
+    everything: bool = False,
+) -> list[Combination]:
+    """Choose combinations.
+
+    Parameters
+    ----------
+    methods : Methods
+    patterns : str or iterable of str, optional
+        Globs over the text form, separated by commas, in any case; a leading ``!`` takes out. A
+        full name without wildcards is taken even where it is runnable but not meaningful.
+    detectors, descriptors : str or iterable of str, optional
+        Names or globs of the detectors and descriptors to keep.
+    everything : bool
+        Choose among all runnable combinations, not only the meaningful ones.
+
+    Returns
+    -------
+    list of Combination
+        In the order of the tables, without repetition.
+
+    Raises
+    ------
+    SelectionError
+        If a pattern selects nothing.
+    """
+    can_run = runnable(methods)
+    usual = set(can_run if everything else meaningful(methods))
+    wanted = _split(patterns)
+    includes = [pattern for pattern in wanted if not pattern.startswith("!")]
+    excludes = [pattern[1:] for pattern in wanted if pattern.startswith("!")]
+    chosen: set[Combination] = set() if includes else set(usual)
+    for pattern in includes:
+        pool = usual if WILDCARDS & set(pattern) else set(can_run)
+        found = {candidate for candidate in pool if fnmatchcase(str(candidate), pattern)}
+        if not found:
+            raise _unmatched(pattern, methods)
+        chosen |= found
+    kept = [
+        candidate
+        for candidate in can_run
+        if candidate in chosen
+        and not any(fnmatchcase(str(candidate), pattern) for pattern in excludes)
+    ]
+    kept = _by_component(kept, "detector", _split(detectors))
+    kept = _by_component(kept, "descriptor", _split(descriptors))
+    if not kept:
+        raise SelectionError("the selection is empty; take out fewer combinations")
+    return kept
