@@ -22,7 +22,7 @@ OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv lint bench lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv lint bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -66,6 +66,9 @@ lint: setup ## style, types and the direction of imports
 
 bench: setup ## the benchmarks of the framework itself
 	@for benchmark in benchmarks/*.py; do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
+
+tables: setup ## bring the tables of the guide up to date with the source
+	$(BIN)/python docs/tables.py
 
 lock: setup ## pin the newest allowed versions in requirements.lock (needs uv)
 	uv pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 \

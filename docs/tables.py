@@ -1,0 +1,165 @@
+"""Write the tables of the guide that follow from the source, between ``<!-- NAME -->`` marks.
+
+``python docs/tables.py`` rewrites them; the tests fail where they are out of date.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+
+from aerocues.evaluation import schema
+from aerocues.evaluation.metrics import METRICS
+from aerocues.evaluation.schema import Column
+from aerocues.evaluation.statuses import STATUSES
+from aerocues.methods.compatibility import incompatibility, why_meaningless
+from aerocues.methods.descriptors import DESCRIPTORS
+from aerocues.methods.detectors import DETECTORS
+from aerocues.methods.matchers import MATCHERS, NORMS
+from aerocues.methods.presets import PRESETS
+from aerocues.methods.registry import opencv_methods
+
+FOLDER = Path(__file__).resolve().parent
+
+
+def _parameters(parameters: Mapping[str, object]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in parameters.items()) or "none"
+
+
+def detectors() -> Iterator[tuple[str, ...]]:
+    """One row a detector."""
+    yield "detector", "parameters", "source"
+    for row in DETECTORS:
+        yield f"`{row.name}`", _parameters(row.parameters), row.reference
+
+
+def descriptors() -> Iterator[tuple[str, ...]]:
+    """One row a descriptor."""
+    yield "descriptor", "elements", "parameters", "source"
+    for row in DESCRIPTORS:
+        elements = f"{row.columns} {row.dtype}"
+        yield f"`{row.name}`", elements, _parameters(row.parameters), row.reference
+
+
+def norms_and_matchers() -> Iterator[tuple[str, ...]]:
+    """One row a norm, one row a matcher."""
+    yield "name", "kind", "what it is", "parameters"
+    for norm in NORMS:
+        yield f"`{norm.name}`", "norm", norm.title, ""
+    for row in MATCHERS:
+        by_norm = (f"{norm}: {_parameters(values)}" for norm, values in row.parameters.items())
+        yield f"`{row.name}`", "matcher", row.title, "; ".join(by_norm)
+
+
+def presets() -> Iterator[tuple[str, ...]]:
+    """One row a preset."""
+    yield "preset", "what it is", "chance test"
+    for preset in PRESETS:
+        yield f"`{preset.name}`", preset.title, "yes" if preset.chance_test else "no"
+
+
+def compatibility() -> Iterator[tuple[str, ...]]:
+    """Combinations by the reason for which they do not run, or run but mean nothing."""
+    methods = opencv_methods()
+    counts: Counter[str] = Counter()
+    examples: dict[str, str] = {}
+    for combination in methods.combinations():
+        found = incompatibility(combination, methods)
+        if found:
+            cause = found[0]
+        elif why_meaningless(combination, methods):
+            cause = "runs, but the L2 norm of strings of bits means nothing"
+        else:
+            cause = "runs and means something: the default selection"
+        counts[cause] += 1
+        examples.setdefault(cause, str(combination))
+    yield "what happens", "combinations", "for instance"
+    for cause, count in sorted(counts.items(), key=lambda item: item[1]):
+        yield cause, str(count), f"`{examples[cause]}`"
+    yield "**declared in all**", f"**{counts.total()}**", ""
+
+
+def statuses() -> Iterator[tuple[str, ...]]:
+    """One row a status."""
+    yield "status", "meaning", "measured again by `--retry-failed`"
+    for status in STATUSES:
+        yield f"`{status.name}`", status.meaning, "yes" if status.retried else ""
+
+
+def _columns(columns: Iterable[Column]) -> Iterator[tuple[str, ...]]:
+    better = {metric.name: f"{metric.better} is better" for metric in METRICS}
+    yield "column", "unit", "definition"
+    for column in columns:
+        definition = column.definition
+        if column.name in better:
+            definition += f" ({better[column.name]})"
+        yield f"`{column.name}`", column.unit, definition
+
+
+def counts() -> Iterator[tuple[str, ...]]:
+    """Columns that count."""
+    return _columns(schema.COUNTS)
+
+
+def metrics() -> Iterator[tuple[str, ...]]:
+    """Columns that follow from counts and times."""
+    return _columns(schema.DERIVED)
+
+
+def ground_truth() -> Iterator[tuple[str, ...]]:
+    """Columns that need ground truth."""
+    return _columns(schema.GROUND_TRUTH)
+
+
+def times() -> Iterator[tuple[str, ...]]:
+    """Columns of stage times and of what a stage takes."""
+    return _columns((*schema.TIMES, *schema.RESOURCES))
+
+
+def names() -> Iterator[tuple[str, ...]]:
+    """Columns that name a row and tell how it ended."""
+    return _columns((*schema.IDENTITY, *schema.OUTCOME))
+
+
+def provenance() -> Iterator[tuple[str, ...]]:
+    """Columns that tell where a row comes from."""
+    return _columns(schema.PROVENANCE)
+
+
+Table = Callable[[], Iterator[tuple[str, ...]]]
+TABLES: dict[str, tuple[Table, ...]] = {
+    "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
+    "measuring.md": (statuses,),
+    "metrics.md": (counts, metrics, ground_truth, times),
+    "results.md": (names, provenance),
+}
+
+
+def as_markdown(rows: Iterator[tuple[str, ...]]) -> str:
+    """Rows as a Markdown table; the first one is the head."""
+    head, *body = rows
+    lines = [head, tuple("---" for _ in head), *body]
+    return "\n".join(
+        "| " + " | ".join(cell.replace("|", r"\|") for cell in line) + " |" for line in lines
+    )
+
+
+def rendered(page: str) -> str:
+    """The text of `page` with its tables as the source has them now."""
+    text = (FOLDER / page).read_text(encoding="utf-8")
+    for table in TABLES[page]:
+        name = table.__name__.replace("_", "-")
+        between = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end of {name} -->)", re.DOTALL)
+        place = between.search(text)
+        if place is None:
+            raise SystemExit(f"docs/{page} has no place for the table {name}")
+        table_text = f"{place[1]}{as_markdown(table())}\n{place[2]}"
+        text = text[: place.start()] + table_text + text[place.end() :]
+    return text
+
+
+if __name__ == "__main__":
+    for page in TABLES:
+        (FOLDER / page).write_text(rendered(page), encoding="utf-8")

@@ -1,0 +1,247 @@
+"""What the guide says is true: commands and programs in it run, tables and links are right."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from docs.tables import TABLES, rendered
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+FENCE = re.compile(r"^```(\w+)(?: ([^\n]*))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+SHELLS = ("console", "bash")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block of a page: its language, the rest of its first line, and its text."""
+
+    language: str
+    note: str
+    text: str
+
+    @property
+    def file_name(self) -> str | None:
+        """The file that the block shows whole, if it says so: ``title="NAME"``."""
+        found = re.search(r'title="([^"]+)"', self.note)
+        return found[1] if found else None
+
+    def commands(self) -> Iterator[tuple[str, str]]:
+        """Each command of ours, and the output that the page shows for it."""
+        lines = self.text.replace("\\\n", " ").splitlines()
+        prompt = "$ " if self.language == "console" else ""
+        starts = [number for number, line in enumerate(lines) if line.startswith(prompt)]
+        for start, end in zip(starts, [*starts[1:], len(lines)], strict=True):
+            command = lines[start].removeprefix(prompt)
+            if command.split()[:1] in (["aerocues"], ["make"]):
+                yield command, "\n".join(lines[start + 1 : end])
+
+
+def blocks(page: Path) -> list[Block]:
+    text = page.read_text(encoding="utf-8")
+    return [Block(mark[1], mark[2] or "", mark[3]) for mark in FENCE.finditer(text)]
+
+
+def commands_of(page: Path) -> list[str]:
+    shells = (block for block in blocks(page) if block.language in SHELLS)
+    return [command for block in shells for command, _ in block.commands()]
+
+
+def identify(page: Path) -> str:
+    return page.name
+
+
+ALL_COMMANDS = sorted({command for page in PAGES for command in commands_of(page)})
+
+
+@pytest.mark.parametrize("page", sorted(TABLES))
+def test_tables_follow_the_source(page: str) -> None:
+    text = (REPOSITORY / "docs" / page).read_text(encoding="utf-8")
+    assert text == rendered(page), "out of date; run: make tables"
+
+
+def anchors(page: Path) -> set[str]:
+    titles = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title).lower().replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("page", [*PAGES, REPOSITORY / "CONTRIBUTING.md"], ids=identify)
+def test_links_between_pages_lead_somewhere(page: Path) -> None:
+    for target in LINK.findall(page.read_text(encoding="utf-8")):
+        if re.match(r"[a-z]+:", target):
+            continue
+        name, _, anchor = target.partition("#")
+        other = page.parent / name if name else page
+        assert other.exists(), f"{page.name} links to {target}"
+        if anchor:
+            assert anchor in anchors(other), f"{page.name} links to {target}"
+
+
+@pytest.mark.parametrize("command", [one for one in ALL_COMMANDS if one.startswith("make")])
+def test_targets_exist(command: str) -> None:
+    makefile = (REPOSITORY / "Makefile").read_text(encoding="utf-8")
+    targets = [word for word in shlex.split(command)[1:] if "=" not in word]
+    for target in targets:
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), f"make {target}"
+
+
+@pytest.fixture(scope="module")
+def help_of() -> dict[tuple[str, ...], str]:
+    """The help of each command that the guide shows, asked for once."""
+    return {}
+
+
+@pytest.mark.parametrize("command", [one for one in ALL_COMMANDS if one.startswith("aerocues")])
+def test_options_exist(command: str, help_of: dict[tuple[str, ...], str]) -> None:
+    words = shlex.split(command.split("|", maxsplit=1)[0])[1:]
+    depth = 2 if words[0] in ("datasets", "methods") and len(words) > 1 else 1
+    path = tuple(word for word in words[:depth] if not word.startswith("-"))
+    if path not in help_of:
+        asked = run_aerocues(*path, "--help")
+        assert asked.returncode == 0, asked.stderr
+        help_of[path] = re.sub(r"\x1b\[[0-9;]*m", "", asked.stdout)
+    known = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", help_of[path]))
+    used = {word for word in words if re.match(r"--?[a-z]", word)}
+    assert used - known == set()
+
+
+def run_aerocues(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [str(Path(sys.executable).parent / "aerocues"), *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1"},
+    )
+
+
+def scene(seed: int) -> NDArray[np.uint8]:
+    """A coloured picture with corners and blobs at several sizes."""
+    generator = np.random.default_rng(seed)
+    picture = np.full((280, 360, 3), 110, np.float64)
+    for _ in range(260):
+        y, x = generator.integers(0, (270, 350))
+        height, width = generator.integers(4, 34, 2)
+        picture[y : y + height, x : x + width] = generator.integers(20, 236, 3)
+    picture += generator.normal(0, 2, picture.shape)
+    return np.clip(picture, 0, 255).astype(np.uint8)
+
+
+def write_view(path: Path, picture: NDArray[np.uint8], shift: int, exif: bytes = b"") -> None:
+    """Write the part of a picture that a camera moved by `shift` pixels sees."""
+    from PIL import Image
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    view = np.ascontiguousarray(picture[shift : shift + 200, shift : shift + 260])
+    Image.fromarray(view).save(path, exif=exif)
+
+
+def gps(latitude: float) -> bytes:
+    """EXIF data with a position."""
+    from PIL import Image
+
+    degrees = int(latitude)
+    minutes = (latitude - degrees) * 60
+    exif = Image.Exif()
+    exif[0x8825] = {1: "N", 2: (degrees, minutes, 0.0), 3: "E", 4: (35.0, 19.0, 0.0), 6: 150.0}
+    return exif.tobytes()
+
+
+def write_stand_in_data(folder: Path) -> None:
+    """Small images under every name that the guide uses for images."""
+    for shift, name in ((0, "a.png"), (9, "b.png")):
+        write_view(folder / "photos" / name, scene(1), shift)
+    for number in range(3):
+        position = gps(37.05 + number * 0.0002)
+        write_view(folder / "flight" / f"{number}.jpg", scene(2), 8 * number, position)
+    for number, project in enumerate(("beach", "quarry")):
+        for shift, name in ((0, "1.jpg"), (10, "2.jpg")):
+            write_view(folder / "projects" / project / name, scene(3 + number), shift)
+    for number in range(6):
+        shift = 6 * number
+        moved = f"1 0 {-shift}\n0 1 {-shift}\n0 0 1\n"
+        write_view(folder / "oxford" / "graf" / f"img{number + 1}.png", scene(5), shift)
+        write_view(folder / "hpatches" / "v_wall" / f"{number + 1}.png", scene(6), shift)
+        if number:
+            (folder / "oxford" / "graf" / f"H1to{number + 1}p").write_text(moved)
+            (folder / "hpatches" / "v_wall" / f"H_1_{number + 1}").write_text(moved)
+    (folder / "pairs.txt").write_text("a.png b.png\n")
+
+
+def run_in(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    """Run a command as a reader would, with what pip installed into `folder` in reach."""
+    environment = {
+        **os.environ,
+        "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
+        "PYTHONPATH": str(folder / "installed"),
+        "COLUMNS": "100",
+        "NO_COLOR": "1",
+    }
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
+
+
+def install(folder: Path) -> None:
+    """Install the package that the blocks so far wrote into `folder`."""
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index"]
+    built = run_in(folder, *pip, "--no-build-isolation", "--target", "installed", ".")
+    assert built.returncode == 0, built.stderr
+
+
+def run_command(folder: Path, command: str, shown: str, *, exact: bool) -> None:
+    if command.startswith("make"):
+        return
+    if command.startswith("aerocues datasets fetch"):
+        command = "aerocues datasets fetch --help"
+    done = run_in(folder, "bash", "-o", "pipefail", "-c", command)
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    if exact:
+        assert done.stdout.split() == shown.split(), command
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)], ids=identify)
+def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path) -> None:
+    write_stand_in_data(tmp_path)
+    for block in blocks(page):
+        if block.file_name:
+            (tmp_path / block.file_name).write_text(block.text, encoding="utf-8")
+            if (tmp_path / "pyproject.toml").exists() and block.language == "python":
+                install(tmp_path)
+        elif block.language == "python":
+            (tmp_path / "program.py").write_text(block.text, encoding="utf-8")
+            done = run_in(tmp_path, sys.executable, "program.py")
+            assert done.returncode == 0, f"{block.text}\n{done.stdout}\n{done.stderr}"
+        elif block.language in SHELLS:
+            for command, shown in block.commands():
+                run_command(tmp_path, command, shown, exact="exact" in block.note)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+def test_the_demonstration_ends_in_a_table(tmp_path: Path) -> None:
+    done = subprocess.run(
+        ["make", "--silent", "demo", f"DEMO_RESULTS={tmp_path / 'results'}"],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "COLUMNS": "160", "NO_COLOR": "1"},
+    )
+    assert done.returncode == 0, done.stderr
+    last_lines = "\n".join(done.stdout.splitlines()[-40:])
+    assert re.search(r"[A-Z_]+-[A-Z_]+-(?:L2|HAM)-(?:BF|FLANN)", last_lines)
