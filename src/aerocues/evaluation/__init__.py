@@ -1,1 +1,1 @@
-
+"""How combinations are measured."""

@@ -37,29 +37,43 @@ def _breaking_keypoints(
     return descriptor.not_detectors.get(combination.detector)
 
 
-def _norm_and_type(
+def _unknown_norm(
     combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
 ) -> str | None:
-    allowed = matcher.dtypes.get(combination.norm, ())
+    if combination.norm in matcher.dtypes:
+        return None
+    return f"the matcher {matcher.name} does not know the norm {combination.norm}"
+
+
+def _bits_of_numbers(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    if combination.norm != "HAM" or descriptor.dtype == "uint8":
+        return None
+    return (
+        f"the Hamming norm compares bits, but {descriptor.name} descriptors are "
+        f"{descriptor.dtype} numbers; use L2"
+    )
+
+
+def _type_of_matcher(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    allowed = matcher.dtypes[combination.norm]
     if descriptor.dtype in allowed:
         return None
-    if not allowed:
-        return f"the matcher {matcher.name} does not know the norm {combination.norm}"
-    if combination.norm == "HAM":
-        return (
-            f"the Hamming norm compares bits, but {descriptor.name} descriptors are "
-            f"{descriptor.dtype} numbers; use L2"
-        )
     return (
         f"{matcher.name} under {combination.norm} needs {' or '.join(allowed)} descriptors, but "
-        f"{descriptor.name} descriptors are {descriptor.dtype}; use HAM"
+        f"{descriptor.name} descriptors are {descriptor.dtype}"
     )
 
 
 RULES: tuple[Rule, ...] = (
-    Rule("descriptor needs its own keypoints", _foreign_keypoints),
-    Rule("keypoints break the descriptor", _breaking_keypoints),
-    Rule("norm or matcher does not fit the descriptor's type", _norm_and_type),
+    Rule("the descriptor needs keypoints of its own family", _foreign_keypoints),
+    Rule("the detector's keypoints break the descriptor", _breaking_keypoints),
+    Rule("the matcher does not know the norm", _unknown_norm),
+    Rule("Hamming norm on descriptors that are numbers", _bits_of_numbers),
+    Rule("the matcher cannot take the descriptor's type", _type_of_matcher),
 )
 
 

@@ -1,0 +1,59 @@
+"""What every engine does: take units, give back their rows, whatever happens to a process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.unit import Context, StageCall, Unit
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A finished unit, or the finished part of one that was split.
+
+    ``cost`` is the part of the planned cost that this settles.
+    """
+
+    unit: Unit
+    rows: list[Row]
+
+
+@dataclass(frozen=True)
+class Activity:
+    """What one worker is doing, and for how many seconds."""
+
+    worker: int
+    call: StageCall | None
+    seconds: float
+
+
+Watch = Callable[[Sequence[Activity]], None]
+
+
+class Engine(Protocol):
+    """Runs units somewhere. The order in which they finish is not defined; their rows are."""
+
+    def run(self, units: Sequence[Unit], context: Context, watch: Watch) -> Iterator[Finished]:
+        """Run all units.
+
+        Parameters
+        ----------
+        units : sequence of Unit
+            In the order in which they are to be begun.
+        context : Context
+        watch : callable
+            Told several times a second what the workers are doing.
+
+        Yields
+        ------
+        Finished
+            Each row of each unit exactly once, failed ones with their status.
+
+        Raises
+        ------
+        EngineError
+            If workers cannot be started.
+        """

@@ -1,0 +1,131 @@
+"""Features of images, computed once an image, detector and descriptor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Image, Pixels
+from aerocues.errors import ImageError, MethodUnavailableError
+from aerocues.evaluation.clock import Clock, StageTime
+from aerocues.methods.arrays import Features, Keypoints
+from aerocues.methods.making import DescriptorStage, DetectorStage
+
+Result = TypeVar("Result")
+WARM_UP_SIZE = 192
+
+
+class StageFailure(Exception):
+    """A stage that did not give a result: the status of the rows that need it, and why."""
+
+    def __init__(self, status: str, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+        self.message = message
+
+
+def run_stage(what: str, call: Callable[[], Result]) -> Result:
+    """Call a method and turn whatever it raises into a StageFailure that names it."""
+    try:
+        return call()
+    except MemoryError as error:
+        raise StageFailure("out_of_memory", f"{what}: {error or 'not enough memory'}") from error
+    except cv2.error as error:
+        text = " ".join(str(error).split())
+        memory = "Insufficient memory" in text or "bad_alloc" in text
+        status = "out_of_memory" if memory else "error"
+        raise StageFailure(status, f"{what}: {text}") from error
+    except MethodUnavailableError as error:
+        raise StageFailure("error", str(error)) from error
+    except ImageError as error:
+        raise StageFailure("error", str(error)) from error
+    except Exception as error:  # a third-party method may raise anything, and costs only itself
+        kind = type(error).__name__
+        raise StageFailure("error", f"{what}: {kind}: {error}") from error
+
+
+@dataclass(frozen=True)
+class Described:
+    """Features of one image under one descriptor, with the time that describing took."""
+
+    features: Features
+    time: StageTime
+
+
+@dataclass
+class ImageFeatures:
+    """One image under one detector: pixels, keypoints and what descriptors made of them."""
+
+    pixels: Pixels
+    keypoints: Keypoints
+    detect_time: StageTime
+    described: dict[str, Described | StageFailure] = field(default_factory=dict)
+    prepared: dict[type, Any] = field(default_factory=dict)
+
+
+def _on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> Keypoints:
+    """Drop keypoints on the border that a warp leaves: they are corners of no object."""
+    if valid is None or not len(keypoints):
+        return keypoints
+    height, width = valid.shape
+    columns = np.clip(np.floor(keypoints.xy[:, 0] + 0.5).astype(np.int64), 0, width - 1)
+    rows = np.clip(np.floor(keypoints.xy[:, 1] + 0.5).astype(np.int64), 0, height - 1)
+    return keypoints.take(valid[rows, columns])
+
+
+class FeatureExtractor:
+    """Runs detectors and descriptors, seeded, warmed up and timed one call at a time."""
+
+    def __init__(self, clock: Clock, seed: int) -> None:
+        self._clock = clock
+        self._seed = seed
+        self._warm: set[tuple[str, str]] = set()
+
+    def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
+        """Decode an image and detect its keypoints; StageFailure where that fails."""
+        pixels = run_stage(f"reading {image.name}", image.read)
+        what = f"{name} detecting in {image.name}"
+        if ("detector", name) not in self._warm:
+            self._warm.add(("detector", name))
+            self._warm_up(lambda: detector.call(_centre(pixels.bgr)))
+        cv2.setRNGSeed(self._seed)
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
+        found = run_stage(what, lambda: detector.read(raw))
+        return ImageFeatures(pixels, _on_valid_pixels(found, pixels.valid), time)
+
+    def describe(
+        self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage
+    ) -> Described:
+        """Describe the keypoints of an image; StageFailure where that fails."""
+        kind = type(descriptor)
+        if kind not in image.prepared:
+            image.prepared[kind] = run_stage(what, lambda: descriptor.prepare(image.keypoints))
+        prepared = image.prepared[kind]
+        bgr = image.pixels.bgr
+        if ("descriptor", name) not in self._warm and len(image.keypoints):
+            self._warm.add(("descriptor", name))
+            few = descriptor.prepare(image.keypoints.take(np.arange(1)))
+            self._warm_up(lambda: descriptor.call(bgr, few))
+        cv2.setRNGSeed(self._seed)
+        raw, time = run_stage(
+            what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
+        )
+        return Described(run_stage(what, lambda: descriptor.read(raw)), time)
+
+    def _warm_up(self, call: Callable[[], Any]) -> None:
+        try:
+            run_stage("warming up", call)
+        except StageFailure:
+            # The timed call right after fails the same way and is recorded.
+            return
+
+
+def _centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    top = max((bgr.shape[0] - WARM_UP_SIZE) // 2, 0)
+    left = max((bgr.shape[1] - WARM_UP_SIZE) // 2, 0)
+    return np.ascontiguousarray(bgr[top : top + WARM_UP_SIZE, left : left + WARM_UP_SIZE])

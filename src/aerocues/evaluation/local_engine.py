@@ -1,0 +1,120 @@
+"""The default engine: worker processes on this machine, watched for death, time and memory."""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+
+from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.evaluator import failed_rows
+from aerocues.evaluation.unit import Context, Unit, split
+from aerocues.evaluation.worker_process import Loss, WorkerProcess
+
+POLL_SECONDS = 0.2
+
+
+@dataclass(frozen=True)
+class LocalEngine:
+    """Worker processes on this machine.
+
+    Parameters
+    ----------
+    workers : int
+        Processes at a time.
+    timeout : float
+        CPU seconds that one stage call may use, and wall seconds for which it may sit idle.
+    memory_limit_mb : int
+        Memory of one worker.
+    """
+
+    workers: int
+    timeout: float
+    memory_limit_mb: int
+
+    def run(self, units: Sequence[Unit], context: Context, watch: Watch) -> Iterator[Finished]:
+        """Run all units; see `Engine.run`."""
+        queue = collections.deque(units)
+        pool = _Pool(self, context)
+        try:
+            while queue or pool.busy:
+                pool.fill(queue)
+                watch(pool.activities())
+                for finished, remaining in pool.collect():
+                    queue.extendleft(reversed(remaining))
+                    if finished is not None:
+                        yield finished
+        finally:
+            pool.close()
+
+
+class _Pool:
+    """The workers of one run and what each of them is at."""
+
+    def __init__(self, engine: LocalEngine, context: Context) -> None:
+        self._engine = engine
+        self._context = context
+        self._exclusive = context.protocol.timing == "exclusive"
+        self._idle: list[WorkerProcess] = []
+        self.busy: dict[WorkerProcess, Unit] = {}
+
+    def _fresh(self) -> WorkerProcess:
+        used = {worker.number for worker in (*self._idle, *self.busy)}
+        number = next(n for n in range(self._engine.workers) if n not in used)
+        return WorkerProcess(
+            number, self._context, self._engine.memory_limit_mb, pinned=self._exclusive
+        )
+
+    def fill(self, queue: collections.deque[Unit]) -> None:
+        """Give every worker that has nothing to do the next unit."""
+        while queue and len(self.busy) < self._engine.workers:
+            unit = queue.popleft()
+            if self._needs_own_process(unit) and self._idle:
+                self._idle.pop().stop()
+            worker = self._idle.pop() if self._idle else self._fresh()
+            worker.begin(unit)
+            self.busy[worker] = unit
+
+    def _needs_own_process(self, unit: Unit) -> bool:
+        return self._context.methods.detectors[unit.detector].unstable
+
+    def activities(self) -> list[Activity]:
+        return [worker.activity() for worker in sorted(self.busy, key=lambda w: w.number)]
+
+    def collect(self) -> Iterator[tuple[Finished | None, list[Unit]]]:
+        """Finished units, and what remains of those whose worker was lost."""
+        ready = wait([worker.pipe for worker in self.busy], POLL_SECONDS)
+        for worker in list(self.busy):
+            if worker.pipe in ready:
+                rows = worker.receive()
+                if isinstance(rows, list):
+                    unit = self.busy.pop(worker)
+                    self._retire(worker, unit)
+                    yield Finished(unit, rows), []
+                    continue
+                loss: Loss | None = rows
+            else:
+                loss = worker.overrun(self._engine.timeout)
+            if loss is not None:
+                yield self._settle(worker, loss)
+
+    def _retire(self, worker: WorkerProcess, unit: Unit) -> None:
+        if self._needs_own_process(unit):
+            # Its memory may be corrupt: nothing else is to be measured there.
+            worker.stop()
+        else:
+            self._idle.append(worker)
+
+    def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
+        unit = self.busy.pop(worker)
+        worker.stop()
+        remaining, guilty = split(unit, loss.call)
+        if guilty is None:
+            return None, remaining
+        rows = failed_rows(self._context, guilty, loss.status, loss.message)
+        return Finished(guilty, rows), remaining
+
+    def close(self) -> None:
+        for worker in (*self._idle, *self.busy):
+            worker.stop()

@@ -1,0 +1,64 @@
+"""Everything that decides a measurement besides the images and the methods."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+Timing = Literal["exclusive", "shared"]
+
+# Raised whenever the same images and methods would give other rows: old rows are then redone.
+MEASUREMENT_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Robust estimation by MAGSAC++ (Barath et al., CVPR 2020), as OpenCV's default runs it.
+
+    Parameters
+    ----------
+    threshold : float
+        Inlier threshold in pixels, on the Sampson distance (fundamental matrix) or the
+        reprojection error (homography).
+    confidence : float
+    max_iterations : int
+    minimum_matches : int
+        With fewer matches no model is estimated: seven points always fit one exactly.
+    """
+
+    threshold: float = 3.0
+    confidence: float = 0.99
+    max_iterations: int = 1000
+    minimum_matches: int = 8
+
+
+@dataclass(frozen=True)
+class ChanceTest:
+    """Is a model better than what wrong matches give?
+
+    The second points of the matches are shuffled and verified again, `shuffles` times. A model
+    passes if its inliers exceed `factor` times the largest count among the shuffled ones.
+    """
+
+    shuffles: int = 5
+    factor: float = 1.4
+
+
+@dataclass(frozen=True)
+class MeasurementProtocol:
+    """How combinations are measured; recorded with every result.
+
+    ``chance`` is None where no chance test is asked for. ``timing`` is ``exclusive`` where a
+    stage has the machine's core to itself, ``shared`` where several workers run at once.
+    """
+
+    seed: int = 0
+    timing: Timing = "shared"
+    verification: Verification = Verification()
+    chance: ChanceTest | None = ChanceTest()
+
+    def identity(self) -> dict[str, object]:
+        """What decides the quality columns: everything but the timing."""
+        settings = asdict(self)
+        del settings["timing"]
+        return {"measurement_version": MEASUREMENT_VERSION, **settings}

@@ -1,0 +1,102 @@
+"""Measured results: the rows of a folder, and how far a run has got."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aerocues.errors import StoreError
+from aerocues.evaluation.store import Store
+
+if TYPE_CHECKING:
+    import polars
+
+
+@dataclass(frozen=True)
+class RunStatus:
+    """How far a run has got.
+
+    ``statuses`` counts rows by status; ``failures`` counts the rows that ended otherwise than ok,
+    by status, detector and descriptor, with an example message.
+    """
+
+    planned: int
+    done: int
+    statuses: Mapping[str, int]
+    failures: polars.DataFrame
+    exclusions: list[dict[str, Any]]
+
+    @property
+    def left(self) -> int:
+        return max(self.planned - self.done, 0)
+
+
+class Results:
+    """The rows of a results folder.
+
+    Parameters
+    ----------
+    folder : path
+
+    Raises
+    ------
+    StoreError
+        If `folder` is no results folder.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self._store = Store.open(Path(folder))
+
+    @property
+    def folder(self) -> Path:
+        return self._store.folder
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Configuration, versions and machine of the latest run."""
+        return self._store.run()
+
+    def table(self) -> polars.DataFrame:
+        """One row a pair and combination, in a fixed order; columns as in `schema.COLUMNS`."""
+        return self._store.table()
+
+    def sql(self, query: str) -> polars.DataFrame:
+        """Answer a SQL query over the table ``results``.
+
+        Raises
+        ------
+        StoreError
+            If the query cannot be understood.
+        """
+        import polars
+
+        try:
+            return polars.SQLContext(results=self.table()).execute(query, eager=True)
+        except polars.exceptions.PolarsError as error:
+            raise StoreError(
+                f"the query failed: {' '.join(str(error).split())}; the table is called results, "
+                'and names such as "gt_precision@3" need double quotes'
+            ) from error
+
+    def status(self) -> RunStatus:
+        """How many rows are done, left and failed, by reason."""
+        import polars
+
+        table = self.table()
+        counts = table.group_by("status").len().sort("len", "status", descending=[True, False])
+        failures = (
+            table.filter(polars.col("status") != "ok")
+            .group_by("status", "detector", "descriptor")
+            .agg(polars.len().alias("rows"), polars.col("message").drop_nulls().first())
+            .sort("status", "rows", "detector", "descriptor", descending=[False, True, False, False])
+        )
+        settings = self.settings
+        return RunStatus(
+            planned=int(settings.get("rows_planned", len(table))),
+            done=len(table),
+            statuses=dict(zip(counts["status"], counts["len"], strict=True)),
+            failures=failures,
+            exclusions=list(settings.get("exclusions", [])),
+        )

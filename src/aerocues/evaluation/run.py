@@ -1,0 +1,219 @@
+"""The whole measurement: dataset and combinations in, a results folder out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import SelectionError
+from aerocues.evaluation.engine import Activity, Engine, Finished
+from aerocues.evaluation.plan import Plan, content_hash, make_plan
+from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.unit import Context
+from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import preset_named
+from aerocues.methods.selection import select
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+DEFAULT_TIMEOUT = 600.0
+
+
+class Observer:
+    """Told how a run goes on; the base says nothing. Displays override what they show."""
+
+    def hashing(self, done: int, total: int) -> None:
+        """`done` of `total` images have been read to tell whether they changed."""
+
+    def planned(self, plan: Plan) -> None:
+        """The work has been divided into units."""
+
+    def working(self, activities: Sequence[Activity]) -> None:
+        """What the workers are doing, several times a second."""
+
+    def finished(self, finished: Finished) -> None:
+        """A unit is finished and stored."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a worker may use; ``None`` stands for a default that suits the machine.
+
+    Parameters
+    ----------
+    workers : int or None
+        Processes at a time; as many as there are cores, one for exclusive timing.
+    timeout : float
+        CPU seconds of one stage call, and the wall seconds that it may sit idle.
+    memory_limit_mb : int or None
+        Memory of one worker; 80 % of the machine's divided by the workers.
+    """
+
+    workers: int | None = None
+    timeout: float = DEFAULT_TIMEOUT
+    memory_limit_mb: int | None = None
+
+
+def usable_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def local_engine(limits: Limits, timing: Timing) -> Engine:
+    """The engine for this machine.
+
+    Raises
+    ------
+    SelectionError
+        If several workers are asked for with exclusive timing, or a limit is not positive.
+    """
+    import psutil
+
+    from aerocues.evaluation.local_engine import LocalEngine
+
+    workers = limits.workers or (1 if timing == "exclusive" else usable_cores())
+    if workers < 1 or limits.timeout <= 0:
+        raise SelectionError("--workers and --timeout must be positive; leave them out to choose")
+    if timing == "exclusive" and workers > 1:
+        raise SelectionError(
+            "exclusive timing gives one stage call the whole machine; leave --workers out or use "
+            "--timing shared"
+        )
+    memory = limits.memory_limit_mb or int(0.8 * psutil.virtual_memory().total / 2**20 / workers)
+    return LocalEngine(workers, limits.timeout, memory)
+
+
+def _context(dataset: Dataset, preset: str, seed: int, timing: Timing) -> Context:
+    chosen = preset_named(preset)
+    protocol = MeasurementProtocol(
+        seed=seed, timing=timing, chance=ChanceTest() if chosen.chance_test else None
+    )
+    versions = software_versions()
+    settings_key = content_hash([chosen.name, protocol.identity(), versions["opencv"]])
+    return Context(
+        dataset=dataset,
+        methods=installed_methods().with_preset(chosen),
+        preset=chosen.name,
+        protocol=protocol,
+        settings_key=settings_key,
+        machine=machine_name(),
+    )
+
+
+def _chosen(
+    context: Context, combinations: str | Iterable[str | Combination] | None
+) -> list[Combination]:
+    patterns = (
+        combinations
+        if combinations is None or isinstance(combinations, str)
+        else [str(combination) for combination in combinations]
+    )
+    return select(context.methods, patterns)
+
+
+def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) -> dict[str, object]:
+    return {
+        "settings_key": context.settings_key,
+        "dataset": {
+            "name": context.dataset.name,
+            "geometry": context.dataset.geometry,
+            "images": len(context.dataset.images),
+            "pairs": len(context.dataset.pairs),
+            "settings": dict(context.dataset.settings),
+        },
+        "preset": context.preset,
+        "protocol": asdict(context.protocol),
+        "combinations": [str(combination) for combination in combinations],
+        "parameters": {
+            str(combination): context.methods.parameters(combination)
+            for combination in combinations
+        },
+        "rows_planned": plan.rows_planned,
+        "exclusions": [
+            {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}
+            for e in plan.exclusions
+        ],
+        "versions": software_versions(),
+        "machine": machine_facts(),
+    }
+
+
+def run(
+    dataset: Dataset,
+    combinations: str | Iterable[str | Combination] | None = None,
+    output: str | Path = "results",
+    *,
+    preset: str = "default",
+    seed: int = 0,
+    timing: Timing = "shared",
+    limits: Limits | None = None,
+    retry_failed: bool = False,
+    observer: Observer | None = None,
+    engine: Engine | None = None,
+) -> Results:
+    """Measure combinations on the pairs of a dataset.
+
+    What the results folder holds already is not measured again; what was interrupted is.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        From `aerocues.open_dataset`.
+    combinations : str or iterable, optional
+        Globs such as ``"ORB-*-HAM-BF,AKAZE-SIFT-*"`` or combinations; all meaningful ones by
+        default.
+    output : path
+        Results folder, made where it is missing.
+    preset : str
+        Preset of parameters and protocol; see `aerocues.methods.presets`.
+    seed : int
+        Set before every stage call.
+    timing : {"shared", "exclusive"}
+        Whether several stages may run at once; quality does not depend on it.
+    limits : Limits, optional
+        Workers, time and memory.
+    retry_failed : bool
+        Measure again what crashed, raised an error, ran out of time or memory.
+    observer : Observer, optional
+        Told how it goes on.
+    engine : Engine, optional
+        Where units run; worker processes on this machine by default.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    AerocuesError
+        If the selection, the images or the results folder do not allow a run.
+    """
+    observer = observer or Observer()
+    engine = engine or local_engine(limits or Limits(), timing)
+    context = _context(dataset, preset, seed, timing)
+    chosen = _chosen(context, combinations)
+    store = Store.create(Path(output))
+    present = store.present(timing, retry_failed=retry_failed)
+    plan = make_plan(context, chosen, present.__contains__, observer.hashing)
+    store.write_run(_facts(context, plan, chosen))
+    observer.planned(plan)
+    _measure(engine.run(plan.units, context, observer.working), store, observer)
+    return Results(store.folder)
+
+
+def _measure(finished_units: Iterator[Finished], store: Store, observer: Observer) -> None:
+    for finished in finished_units:
+        name = content_hash([row["row_key"] for row in finished.rows])
+        store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
+        observer.finished(finished)

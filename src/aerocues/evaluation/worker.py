@@ -1,0 +1,57 @@
+"""The process that evaluates units: ``python -m aerocues.evaluation.worker``.
+
+It receives a context and then units over a pipe, and sends their rows back. It is started anew
+rather than forked, so that callers need no ``__main__`` guard and threads of theirs do no harm.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from aerocues.evaluation.evaluator import Evaluator
+from aerocues.evaluation.heartbeat import Heartbeat
+
+
+def _limit_memory(megabytes: int) -> None:
+    """Make allocations beyond the limit fail, so that they are reported rather than killed."""
+    try:
+        import resource
+    except ImportError:
+        return  # no such limit on this system; the parent watches the resident set anyway
+    limit = megabytes * 1024 * 1024
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+
+
+def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
+    """Evaluate units until the parent closes the pipe."""
+    context = pipe.recv()
+    evaluator = Evaluator(context, heartbeat.announce)
+    pipe.send("ready")
+    while True:
+        try:
+            unit = pipe.recv()
+        except EOFError:
+            return
+        rows = list(evaluator.evaluate(unit))
+        heartbeat.announce(None)
+        pipe.send(rows)
+
+
+def main() -> None:
+    """Entry point: file descriptor of the pipe, heartbeat file, memory limit in MB, core or -1."""
+    descriptor, page, megabytes, core = sys.argv[1:]
+    # Ctrl-C reaches the whole process group; the parent decides when a worker ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {int(core)})
+    _limit_memory(int(megabytes))
+    with Connection(int(descriptor)) as pipe:
+        serve(pipe, Heartbeat(Path(page)))
+
+
+if __name__ == "__main__":
+    main()
