@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, Protocol
 
 import numpy as np
@@ -78,7 +79,7 @@ class Pair:
     Parameters
     ----------
     index : int
-        0-based position among the pairs of the dataset.
+        0-based position among the pairs of the whole dataset; a selection of sequences keeps it.
     image_1, image_2 : str
         Names of the images.
     sequence : str
@@ -111,7 +112,8 @@ class Dataset:
 
     def image(self, name: str) -> Image:
         """The image called `name`; KeyError where there is none."""
-        for image in self.images:
-            if image.name == name:
-                return image
-        raise KeyError(name)
+        return self._by_name[name]
+
+    @cached_property
+    def _by_name(self) -> dict[str, Image]:
+        return {image.name: image for image in self.images}

@@ -1,0 +1,85 @@
+"""Brings decoded pixels to the size and the illumination that are asked for."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Pixels
+from aerocues.errors import DatasetError
+
+Equalization = Literal["none", "histogram", "clahe"]
+EQUALIZATIONS: tuple[str, ...] = get_args(Equalization)
+
+_CLAHE_CLIP_LIMIT = 2.0
+_CLAHE_TILES = (8, 8)
+
+
+def check_settings(max_width: int | None, equalize: str) -> None:
+    """Raise DatasetError unless the size and the equalisation make sense."""
+    if max_width is not None and max_width < 16:
+        raise DatasetError(f"--max-width {max_width} is too small; give 16 pixels or more")
+    if equalize not in EQUALIZATIONS:
+        raise DatasetError(f"unknown equalisation '{equalize}'; use {', '.join(EQUALIZATIONS)}")
+
+
+def fitted_size(size: tuple[int, int], max_width: int | None) -> tuple[int, int]:
+    """Width and height after shrinking to `max_width`; never enlarged."""
+    width, height = size
+    if max_width is None or width <= max_width:
+        return width, height
+    return max_width, max(1, round(height * max_width / width))
+
+
+def shrink(pixels: Pixels, max_width: int | None) -> Pixels:
+    """Shrink to `max_width` by averaging over areas; valid stays what is wholly valid."""
+    height, width = pixels.bgr.shape[:2]
+    size = fitted_size((width, height), max_width)
+    return pixels if size == (width, height) else resize(pixels, size)
+
+
+def resize(pixels: Pixels, size: tuple[int, int]) -> Pixels:
+    """Resize to (width, height): by area where it shrinks, bilinear where it grows."""
+    interpolation = cv2.INTER_AREA if size[0] < pixels.bgr.shape[1] else cv2.INTER_LINEAR
+    bgr: Any = cv2.resize(pixels.bgr, size, interpolation=interpolation)
+    if pixels.valid is None:
+        return Pixels(bgr)
+    mask: Any = cv2.resize(pixels.valid.astype(np.uint8) * 255, size, interpolation=interpolation)
+    return Pixels(bgr, mask == 255)
+
+
+def equalize_luminance(pixels: Pixels, how: str) -> Pixels:
+    """Normalise the illumination: ``none``, ``histogram`` or ``clahe`` (clip limit 2, 8x8 tiles).
+
+    Only the luminance (Y of YCrCb) is changed; colours keep their hue.
+    """
+    if how == "none":
+        return pixels
+    luminance: Any = cv2.cvtColor(pixels.bgr, cv2.COLOR_BGR2YCrCb)
+    plane = np.ascontiguousarray(luminance[..., 0])
+    luminance[..., 0] = _equalized(plane, how)
+    bgr: Any = cv2.cvtColor(luminance, cv2.COLOR_YCrCb2BGR)
+    return Pixels(bgr, pixels.valid)
+
+
+def _equalized(plane: NDArray[np.uint8], how: str) -> Any:
+    if how == "histogram":
+        return cv2.equalizeHist(plane)
+    if how == "clahe":
+        return cv2.createCLAHE(_CLAHE_CLIP_LIMIT, _CLAHE_TILES).apply(plane)
+    raise DatasetError(f"unknown equalisation '{how}'; use {', '.join(EQUALIZATIONS)}")
+
+
+def scale_matrix(before: tuple[int, int], after: tuple[int, int]) -> NDArray[np.float64]:
+    """Pixel coordinates after resizing, from those before, as a (3, 3) matrix.
+
+    Sizes are (width, height). The *areas* of the pictures coincide, so with pixel centres at
+    integers x' = s (x + 0.5) - 0.5: the half pixel is scaled along.
+    """
+    sx, sy = after[0] / before[0], after[1] / before[1]
+    return np.array(
+        [[sx, 0.0, 0.5 * sx - 0.5], [0.0, sy, 0.5 * sy - 0.5], [0.0, 0.0, 1.0]], dtype=np.float64
+    )

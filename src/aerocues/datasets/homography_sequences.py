@@ -1,0 +1,142 @@
+"""Oxford and HPatches: sequences of images of a plane, with homographies from the first one."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Dataset, Image, Pair
+from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.fitting import fitted_size, scale_matrix
+from aerocues.datasets.folder import image_paths, subfolders
+from aerocues.datasets.options import Options
+from aerocues.errors import DatasetError
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a benchmark names its files.
+
+    Parameters
+    ----------
+    name : str
+        Of the benchmark; the dataset is called so.
+    image : str
+        Regular expression of an image's name without suffix; its group is the image's number.
+    homography : str
+        Name of the file with the homography from image 1 to image {number}.
+    """
+
+    name: str
+    image: str
+    homography: str
+
+
+OXFORD = Layout("oxford", r"img(\d+)", "H1to{number}p")
+HPATCHES = Layout("hpatches", r"(\d+)", "H_1_{number}")
+
+
+def open_oxford(folder: Path, options: Options) -> Dataset:
+    """Oxford affine covariant sequences (Mikolajczyk et al., IJCV 2005), image 1 with each other.
+
+    `folder` holds the sequences, or is one. Raises DatasetError where files are missing or bad.
+    """
+    return _open(OXFORD, folder, options)
+
+
+def open_hpatches(folder: Path, options: Options) -> Dataset:
+    """HPatches sequences (Balntas et al., CVPR 2017), image 1 with each other one.
+
+    `folder` holds the sequences, or is one. Raises DatasetError where files are missing or bad.
+    """
+    return _open(HPATCHES, folder, options)
+
+
+def _open(layout: Layout, folder: Path, options: Options) -> Dataset:
+    if _numbered(layout, folder):
+        sequences = [folder]
+    else:
+        sequences = [child for child in subfolders(folder) if _numbered(layout, child)]
+    if not sequences:
+        homography = layout.homography.format(number=2)
+        raise DatasetError(
+            f"{folder} holds no {layout.name} sequence (folders with images 1, 2, ... and files "
+            f"{homography}, ...); `aerocues datasets fetch {layout.name} --to DIR` gets them"
+        )
+    images: list[Image] = []
+    pairs: list[Pair] = []
+    for sequence in sequences:
+        own = _sequence(layout, sequence, options)
+        images += own[0]
+        pairs += [Pair(len(pairs) + i, *fields) for i, fields in enumerate(own[1])]
+    settings = options.settings(pairs="first with each other")
+    return Dataset(layout.name, images, pairs, "homography", settings)
+
+
+def _numbered(layout: Layout, folder: Path) -> dict[int, Path]:
+    """Images of a sequence by number; of several files with one number the first by name."""
+    numbered: dict[int, Path] = {}
+    for path in image_paths(folder):
+        if match := re.fullmatch(layout.image, path.stem):
+            numbered.setdefault(int(match[1]), path)
+    return dict(sorted(numbered.items()))
+
+
+PairFields = tuple[str, str, str, NDArray[np.float64]]
+
+
+def _sequence(
+    layout: Layout, folder: Path, options: Options
+) -> tuple[list[Image], list[PairFields]]:
+    paths = _numbered(layout, folder)
+    if 1 not in paths or len(paths) < 2:
+        raise DatasetError(f"the sequence {folder} lacks image 1 or all others; fetch it again")
+    name = folder.resolve().name
+    images = {
+        number: Image(
+            f"{name}/{path.name}", FileSource(path.absolute(), options.max_width, options.equalize)
+        )
+        for number, path in paths.items()
+    }
+    scales = {number: _scale(image) for number, image in images.items()}
+    pairs = []
+    for number in list(paths)[1:]:
+        file = folder / layout.homography.format(number=number)
+        matrix = scales[number] @ read_homography(file) @ np.linalg.inv(scales[1])
+        pairs.append((images[1].name, images[number].name, name, matrix / matrix[2, 2]))
+    return list(images.values()), pairs
+
+
+def _scale(image: Image) -> NDArray[np.float64]:
+    source = image.source
+    if not isinstance(source, FileSource) or source.max_width is None:
+        return np.eye(3)
+    original = source.original_size()
+    return scale_matrix(original, fitted_size(original, source.max_width))
+
+
+def read_homography(path: Path) -> NDArray[np.float64]:
+    """A (3, 3) matrix from a text file with nine numbers.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, or does not hold an invertible matrix of nine numbers.
+    """
+    try:
+        numbers = [float(word) for word in path.read_text(encoding="ascii").split()]
+    except OSError as error:
+        raise DatasetError(f"cannot read the homography {path}: {error.strerror}") from error
+    except ValueError:
+        numbers = []
+    matrix = np.array(numbers, dtype=np.float64)
+    if matrix.size != 9 or not np.isfinite(matrix).all():
+        raise DatasetError(f"{path} does not hold nine numbers; fetch the sequence again")
+    matrix = matrix.reshape(3, 3)
+    if abs(np.linalg.det(matrix)) < 1e-12 or matrix[2, 2] == 0:
+        raise DatasetError(f"{path} does not hold a homography; fetch the sequence again")
+    return matrix

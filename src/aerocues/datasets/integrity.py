@@ -1,0 +1,62 @@
+"""Finds files that were cut off or damaged in their structure, without decoding them.
+
+OpenCV fills what is missing in a truncated JPEG or PNG with gray and says nothing.
+"""
+
+from __future__ import annotations
+
+import re
+import zlib
+
+_NEXT_MARKER = re.compile(rb"\xff[\x01-\xcf\xd8-\xfe]")
+_END_OF_IMAGE = 0xD9
+_START_OF_SCAN = 0xDA
+_WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD9)})
+
+
+def find_damage(data: bytes, image_format: str) -> str | None:
+    """What is wrong with the structure of a file, or None.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+    image_format : str
+        As in `Header.format`. JPEG is followed from segment to segment to its end marker, PNG from
+        chunk to chunk with the checksums; decoders are strict enough about the other formats.
+    """
+    if image_format == "JPEG":
+        return _jpeg_damage(data)
+    if image_format == "PNG":
+        return _png_damage(data)
+    return None
+
+
+def _jpeg_damage(data: bytes) -> str | None:
+    # Thumbnails in the EXIF segment have end markers of their own: hence segment by segment.
+    position = 2
+    while (found := _NEXT_MARKER.search(data, position)) is not None:
+        marker, position = data[found.end() - 1], found.end()
+        if marker == _END_OF_IMAGE:
+            return None
+        if marker not in _WITHOUT_LENGTH:
+            position += int.from_bytes(data[position : position + 2], "big")
+    return "it is truncated (no end of image)"
+
+
+def _png_damage(data: bytes) -> str | None:
+    position = 8
+    while position + 12 <= len(data):
+        length = int.from_bytes(data[position : position + 4], "big")
+        kind = data[position + 4 : position + 8]
+        end = position + 8 + length
+        if kind == b"IEND":
+            return None
+        if end + 4 > len(data):
+            break
+        critical = kind[:1].isupper()
+        checksum = int.from_bytes(data[end : end + 4], "big")
+        if critical and zlib.crc32(memoryview(data)[position + 4 : end]) != checksum:
+            return f"it is damaged (checksum of chunk {kind.decode('latin-1')})"
+        position = end + 4
+    return "it is truncated (no end of image)"

@@ -1,0 +1,207 @@
+"""Which images of a folder are matched with which: strategies as data, and their text form."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Image
+from aerocues.datasets.gps import east_north_up
+from aerocues.errors import DatasetError
+
+Names = tuple[str, str]
+GPS_NEIGHBOURS = 8
+FORMS = "consecutive, consecutive:K, exhaustive, gps, gps:K, gps:50m or a file of pairs"
+
+
+class PairStrategy(Protocol):
+    """Chooses pairs among images that come in order."""
+
+    def pairs(self, images: Sequence[Image]) -> list[Names]:
+        """Names of the images to match, in order, no pair twice.
+
+        Raises
+        ------
+        DatasetError
+            If the images lack what the strategy needs.
+        """
+
+
+@dataclass(frozen=True)
+class Consecutive:
+    """Each image with its next `neighbours` ones."""
+
+    neighbours: int = 1
+
+    def pairs(self, images: Sequence[Image]) -> list[Names]:
+        return [
+            (first.name, second.name)
+            for position, first in enumerate(images)
+            for second in images[position + 1 : position + 1 + self.neighbours]
+        ]
+
+
+@dataclass(frozen=True)
+class Exhaustive:
+    """Every two images."""
+
+    def pairs(self, images: Sequence[Image]) -> list[Names]:
+        return list(combinations([image.name for image in images], 2))
+
+
+@dataclass(frozen=True)
+class GpsNeighbours:
+    """Images taken near each other: horizontal distance by GPS.
+
+    Parameters
+    ----------
+    nearest : int
+        Each image with its nearest ones; used where `radius` is None.
+    radius : float or None
+        Metres: every two images that are at most so far apart.
+    """
+
+    nearest: int = GPS_NEIGHBOURS
+    radius: float | None = None
+
+    def pairs(self, images: Sequence[Image]) -> list[Names]:
+        from scipy.spatial import cKDTree
+
+        positions = _horizontal_positions(images)
+        tree = cKDTree(positions)
+        if self.radius is not None:
+            found = {(int(i), int(j)) for i, j in tree.query_pairs(self.radius)}
+        else:
+            count = min(self.nearest + 1, len(images))
+            _, indices = tree.query(positions, k=count)
+            found = {
+                (min(i, int(j)), max(i, int(j)))
+                for i, row in enumerate(indices.reshape(len(images), count))
+                for j in [other for other in row if other != i][: self.nearest]
+            }
+        if not found:
+            raise DatasetError(f"no two images lie within {self.radius} m; give a larger radius")
+        return [(images[i].name, images[j].name) for i, j in sorted(found)]
+
+
+def _horizontal_positions(images: Sequence[Image]) -> NDArray[np.float64]:
+    missing = [image.name for image in images if image.gps is None]
+    if missing:
+        raise DatasetError(
+            f"{len(missing)} of {len(images)} images have no GPS position "
+            f"({_listed(missing)}); use --pairs consecutive or exhaustive"
+        )
+    return east_north_up([image.gps for image in images if image.gps is not None])[:, :2]
+
+
+@dataclass(frozen=True)
+class PairsFile:
+    """Pairs listed in a text file: two names a line, separated by blanks or a tab.
+
+    Names with blanks stand in double quotes (or the line has a tab). ``#`` begins a comment at the
+    start of a line or after a blank. A pair that is listed again is taken once.
+    """
+
+    path: Path
+
+    def pairs(self, images: Sequence[Image]) -> list[Names]:
+        try:
+            text = self.path.read_text(encoding="utf-8-sig")
+        except OSError as error:
+            raise DatasetError(
+                f"cannot read the pairs file {self.path}: {error.strerror}; check its path"
+            ) from error
+        except UnicodeDecodeError as error:
+            raise DatasetError(
+                f"the pairs file {self.path} is not text in UTF-8; save it as such"
+            ) from error
+        return parse_pairs_file(text, [image.name for image in images], str(self.path))
+
+
+def parse_pairs_file(text: str, names: Sequence[str], where: str = "pairs file") -> list[Names]:
+    """The pairs in the text of a pairs file.
+
+    Raises
+    ------
+    DatasetError
+        If a line does not hold two different names out of `names`; all such lines are in the
+        message (five of them at most are spelled out), with their numbers.
+    """
+    known = set(names)
+    pairs: dict[Names, None] = {}
+    faults: list[str] = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        fields = _fields(line)
+        if not fields:
+            continue
+        fault = _fault(fields, known)
+        if fault is None:
+            pairs[(fields[0], fields[1])] = None
+        else:
+            faults.append(f"line {number}: {fault}")
+    if faults:
+        rest = f"; and {len(faults) - 5} more" if len(faults) > 5 else ""
+        raise DatasetError(
+            f"{where} has {len(faults)} bad line{'s' * (len(faults) > 1)}: "
+            f"{'; '.join(faults[:5])}{rest}; write two names of images a line"
+        )
+    if not pairs:
+        raise DatasetError(f"{where} lists no pairs; write two names of images a line")
+    return list(pairs)
+
+
+def _fields(line: str) -> list[str]:
+    content = re.sub(r"(^|\s)#.*$", "", line).strip()
+    if "\t" in content:
+        return [field.strip().strip('"') for field in content.split("\t") if field.strip()]
+    return [quoted or plain for quoted, plain in re.findall(r'"([^"]+)"|(\S+)', content)]
+
+
+def _fault(fields: Sequence[str], known: set[str]) -> str | None:
+    from difflib import get_close_matches
+
+    if len(fields) != 2:
+        return f"{len(fields)} name{'s' * (len(fields) != 1)} instead of 2"
+    for name in fields:
+        if name not in known:
+            close = get_close_matches(name, known, n=1)
+            return f"no image '{name}'" + (f" (did you mean '{close[0]}'?)" if close else "")
+    return "an image with itself" if fields[0] == fields[1] else None
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+
+
+_PATTERNS: tuple[tuple[str, Callable[[str], PairStrategy]], ...] = (
+    (r"consecutive", lambda _: Consecutive()),
+    (r"consecutive:([1-9]\d*)", lambda count: Consecutive(int(count))),
+    (r"exhaustive", lambda _: Exhaustive()),
+    (r"gps", lambda _: GpsNeighbours()),
+    (r"gps:([1-9]\d*)", lambda count: GpsNeighbours(int(count))),
+    (r"gps:(\d+(?:\.\d+)?)\s*m", lambda metres: GpsNeighbours(radius=float(metres))),
+)
+
+
+def parse_pairs(text: str) -> PairStrategy:
+    """The strategy that a text names, such as ``consecutive:3``, ``gps:50m`` or a path.
+
+    Raises
+    ------
+    DatasetError
+        If it is neither a known form nor an existing file.
+    """
+    for pattern, strategy in _PATTERNS:
+        if match := re.fullmatch(pattern, text.strip(), flags=re.IGNORECASE):
+            return strategy(match[match.lastindex or 0])
+    path = Path(text).expanduser()
+    if path.is_file():
+        return PairsFile(path.absolute())
+    raise DatasetError(f"--pairs {text} is neither a way to pair nor a file; use {FORMS}")

@@ -1,0 +1,184 @@
+"""One image and transformations of it, with the exact homography to each: a table of rows."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from aerocues.datasets import geometry, photometry
+from aerocues.datasets.dataset import Dataset, Image, ImageSource, Pair, Pixels
+from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.fitting import equalize_luminance, fitted_size, shrink
+from aerocues.datasets.options import Options
+from aerocues.datasets.town import scenery
+from aerocues.errors import DatasetError
+
+ORIGINAL = "original"
+RECIPE_VERSION = "1"
+"""Part of content keys; raised when a transformation comes to give other pixels."""
+
+
+@dataclass(frozen=True)
+class Transformation:
+    """One row of the table.
+
+    Parameters
+    ----------
+    sequence : str
+        Name of the group of rows.
+    kind : str
+        A key of `geometry.WARPS` or `photometry.CHANGES`: what is done.
+    value : float
+        How much: degrees, factor, gray levels, pixels or quality, as the kind says.
+    text : str
+        Format of the value in the image's name.
+    """
+
+    sequence: str
+    kind: str
+    value: float
+    text: str
+
+    @property
+    def name(self) -> str:
+        """Name of the transformed image, such as ``rotation_015``."""
+        return f"{self.kind}_{self.value:{self.text}}"
+
+
+def _rows(sequence: str, kind: str, text: str, *values: float) -> tuple[Transformation, ...]:
+    return tuple(Transformation(sequence, kind, value, text) for value in values)
+
+
+STANDARD: tuple[Transformation, ...] = (
+    *_rows("rotation", "rotation", "03.0f", 15, 30, 45, 60, 75, 90),
+    *_rows("scale", "scale", ".2f", 0.5, 0.7, 0.9, 1.1, 1.3, 1.5),
+    *_rows("intensity", "intensity_add", "+03.0f", -30, -10, 10, 30),
+    *_rows("intensity", "intensity_mul", ".2f", 0.7, 0.9, 1.1, 1.3),
+)
+EXTENDED: tuple[Transformation, ...] = (
+    *STANDARD[:6],
+    *_rows("rotation", "rotation", "03.0f", 105, 120, 135, 150, 165, 180),
+    *STANDARD[6:],
+    *_rows("contrast", "contrast", ".2f", 0.4, 0.7, 1.5, 2.0),
+    *_rows("noise", "noise", "02.0f", 5, 10, 20, 30),
+    *_rows("blur", "blur", ".1f", 1, 2, 3, 4),
+    *_rows("jpeg", "jpeg", "02.0f", 50, 25, 10, 5),
+    *_rows("tilt", "tilt", "02.0f", 20, 30, 40, 50, 60),
+)
+SETS = {"synthetic": STANDARD, "synthetic-extended": EXTENDED}
+_ROWS = {row.name: row for row in EXTENDED}
+
+
+@dataclass(frozen=True)
+class DrawnSource:
+    """The town that the package draws."""
+
+    max_width: int | None = None
+    equalize: str = "none"
+
+    def read(self) -> Pixels:
+        """The picture at its final size; all of it is valid."""
+        pixels = shrink(Pixels(scenery.town().copy()), self.max_width)
+        return equalize_luminance(pixels, self.equalize)
+
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture that `read` returns."""
+        return fitted_size((scenery.WIDTH, scenery.HEIGHT), self.max_width)
+
+    def is_gray(self) -> bool:
+        """Never."""
+        return False
+
+    def content_key(self) -> str:
+        """Hash of the drawn pixels and of the settings."""
+        return self._content_key
+
+    @cached_property
+    def _content_key(self) -> str:
+        digest = hashlib.sha256(scenery.town().tobytes())
+        digest.update(f"|{self.max_width}|{self.equalize}".encode())
+        return digest.hexdigest()
+
+
+@dataclass(frozen=True)
+class TransformedSource:
+    """A transformation of another source, computed whenever it is read.
+
+    Parameters
+    ----------
+    original : DrawnSource or FileSource
+        Not equalised: illumination is normalised last, as it is for a photograph.
+    transformation : str
+        Name of a row of `EXTENDED`.
+    equalize : str
+        ``none``, ``histogram`` or ``clahe``.
+    """
+
+    original: DrawnSource | FileSource
+    transformation: str
+    equalize: str = "none"
+
+    def read(self) -> Pixels:
+        """The transformed picture; ImageError if the original cannot be decoded."""
+        row, pixels = _ROWS[self.transformation], self.original.read()
+        if row.kind in geometry.WARPS:
+            changed = geometry.warp(pixels, row.kind, row.value)
+        else:
+            change = photometry.CHANGES[row.kind]
+            changed = Pixels(change(pixels.bgr, row.value, self.is_gray()), pixels.valid)
+        return equalize_luminance(changed, self.equalize)
+
+    def is_gray(self) -> bool:
+        """Whether the original has a single channel."""
+        return self.original.is_gray()
+
+    def content_key(self) -> str:
+        """Hash of the original's key and of the transformation."""
+        recipe = f"{RECIPE_VERSION}|{_ROWS[self.transformation]}|{self.equalize}"
+        return hashlib.sha256(f"{self.original.content_key()}|{recipe}".encode()).hexdigest()
+
+
+def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic") -> Dataset:
+    """The original against each of its transformations.
+
+    Parameters
+    ----------
+    image : Path or None
+        The original; None: the town that the package draws.
+    options : Options
+        `max_width` is the width of the original.
+    kind : str
+        ``synthetic`` (20 pairs) or ``synthetic-extended``.
+
+    Raises
+    ------
+    DatasetError
+        If the image is missing or its header cannot be read.
+    """
+    plain = _source(image, options.max_width, "none")
+    size = plain.size()
+    images = [Image(ORIGINAL, _source(image, options.max_width, options.equalize))]
+    pairs = []
+    for index, row in enumerate(SETS[kind]):
+        source: ImageSource = TransformedSource(plain, row.name, options.equalize)
+        images.append(Image(row.name, source))
+        matrix = np.eye(3)
+        if row.kind in geometry.WARPS:
+            matrix, _ = geometry.placement(row.kind, row.value, size)
+        pairs.append(Pair(index, ORIGINAL, row.name, row.sequence, matrix))
+    settings = options.settings(
+        pairs="original with each other", source="drawn" if image is None else image.name
+    )
+    return Dataset(kind, images, pairs, "homography", settings)
+
+
+def _source(image: Path | None, max_width: int | None, equalize: str) -> DrawnSource | FileSource:
+    if image is None:
+        return DrawnSource(max_width, equalize)
+    if image.is_dir():
+        raise DatasetError(f"{image} is a folder; name one image: synthetic:IMAGE")
+    return FileSource(image.absolute(), max_width, equalize)

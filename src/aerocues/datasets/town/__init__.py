@@ -1,0 +1,1 @@
+"""The picture of a town that the package draws for itself."""
