@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import cv2
-import numpy as np
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation import ground_truth
@@ -15,7 +14,7 @@ from aerocues.evaluation.features import (
     Described,
     FeatureExtractor,
     ImageFeatures,
-    StageFailure,
+    StageError,
     run_stage,
 )
 from aerocues.evaluation.metrics import Row, add_metrics
@@ -28,7 +27,7 @@ from aerocues.evaluation.verification import (
     magsac_parameters,
     read_model,
 )
-from aerocues.methods.arrays import Matches
+from aerocues.methods.arrays import Float32Array, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import (
     DescriptorStage,
@@ -110,7 +109,7 @@ class Evaluator:
         """
         pairs = [self._context.dataset.pairs[work.pair] for work in unit.work]
         last = {name: i for i, pair in enumerate(pairs) for name in (pair.image_1, pair.image_2)}
-        cache: dict[str, ImageFeatures | StageFailure] = {}
+        cache: dict[str, ImageFeatures | StageError] = {}
         for position, (pair, work) in enumerate(zip(pairs, unit.work, strict=True)):
             yield from self._evaluate_pair(unit.detector, pair, work, cache)
             for name in (pair.image_1, pair.image_2):
@@ -122,7 +121,7 @@ class Evaluator:
         detector: str,
         pair: Pair,
         work: PairWork,
-        cache: dict[str, ImageFeatures | StageFailure],
+        cache: dict[str, ImageFeatures | StageError],
     ) -> Iterable[Row]:
         repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
         for combination, key in zip(work.combinations, work.row_keys, strict=True):
@@ -137,12 +136,12 @@ class Evaluator:
                 )
                 features = PairFeatures(pair, (first, second), described)
                 row["status"] = self._measure(row, features, combination, repeatabilities)
-            except StageFailure as failure:
+            except StageError as failure:
                 row["status"], row["message"] = failure.status, failure.message
             yield add_metrics(row)
 
     def _image(
-        self, detector: str, name: str, pair: Pair, cache: dict[str, ImageFeatures | StageFailure]
+        self, detector: str, name: str, pair: Pair, cache: dict[str, ImageFeatures | StageError]
     ) -> ImageFeatures:
         if name not in cache:
             self._announce(StageCall("detect", pair.index, name, detector))
@@ -153,10 +152,10 @@ class Evaluator:
                     )
                 image = self._context.dataset.image(name)
                 cache[name] = self._extractor.detect(image, detector, self._detectors[detector])
-            except StageFailure as failure:
+            except StageError as failure:
                 cache[name] = failure
         found = cache[name]
-        if isinstance(found, StageFailure):
+        if isinstance(found, StageError):
             raise found
         return found
 
@@ -176,10 +175,10 @@ class Evaluator:
                     f"{descriptor} describing {detector} keypoints of {name}",
                     self._descriptors[descriptor],
                 )
-            except StageFailure as failure:
+            except StageError as failure:
                 image.described[descriptor] = failure
         found = image.described[descriptor]
-        if isinstance(found, StageFailure):
+        if isinstance(found, StageError):
             raise found
         return found
 
@@ -188,7 +187,7 @@ class Evaluator:
             _record_time(row, f"detect_seconds_{side}", image.detect_time)
         if not len(first.keypoints) or not len(second.keypoints):
             row["keypoints_1"], row["keypoints_2"] = len(first.keypoints), len(second.keypoints)
-            raise StageFailure("no_keypoints", "")
+            raise StageError("no_keypoints", "")
 
     def _measure(
         self,
@@ -225,9 +224,7 @@ class Evaluator:
         matcher = self._matchers[kind]
         first, second = (described.features for described in features.described)
         cv2.setRNGSeed(self._context.protocol.seed)
-        raw, time = run_stage(
-            what, lambda: self._clock.time(lambda: matcher.call(first, second))
-        )
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
         _record_time(row, "match_seconds", time)
         return run_stage(what, lambda: matcher.read(raw))
 
@@ -236,8 +233,8 @@ class Evaluator:
         row: Row,
         pair: Pair,
         combination: Combination,
-        points_1: np.ndarray,
-        points_2: np.ndarray,
+        points_1: Float32Array,
+        points_2: Float32Array,
     ) -> str:
         protocol = self._context.protocol
         count = len(points_1)
@@ -261,7 +258,10 @@ class Evaluator:
                     points_1, points_2, protocol.verification, chance, protocol.seed
                 ),
             )
-            if model.matrix is not None and model.count <= chance.factor * row["chance_inliers_max"]:
+            if (
+                model.matrix is not None
+                and model.count <= chance.factor * row["chance_inliers_max"]
+            ):
                 return "chance"
         return "no_model" if model.matrix is None else "ok"
 
@@ -269,8 +269,8 @@ class Evaluator:
         self,
         row: Row,
         features: PairFeatures,
-        points_1: np.ndarray,
-        points_2: np.ndarray,
+        points_1: Float32Array,
+        points_2: Float32Array,
         repeatabilities: dict[tuple[bytes, bytes], float | None],
     ) -> None:
         truth = features.pair.homography
@@ -281,20 +281,20 @@ class Evaluator:
             if len(errors):
                 row[f"gt_precision@{threshold}"] = correct / len(errors)
             row[f"gt_matching_score@{threshold}"] = correct / row["keypoints_1"]
-        pixels = [image.pixels for image in features.images]
-        positions = [described.features.keypoints.xy for described in features.described]
-        same = (positions[0].tobytes(), positions[1].tobytes())
+        pixels_1, pixels_2 = (image.pixels for image in features.images)
+        xy_1, xy_2 = (described.features.keypoints.xy for described in features.described)
+        same = (xy_1.tobytes(), xy_2.tobytes())
         if same not in repeatabilities:
-            repeatabilities[same] = ground_truth.repeatability(*positions, truth, *pixels)
+            repeatabilities[same] = ground_truth.repeatability(
+                xy_1, xy_2, truth, pixels_1, pixels_2
+            )
         row["gt_repeatability"] = repeatabilities[same]
         model = run_stage(
             "estimating a homography",
-            lambda: estimate_homography(
-                points_1, points_2, self._context.protocol.verification
-            ),
+            lambda: estimate_homography(points_1, points_2, self._context.protocol.verification),
         )
         row["homography_inliers"] = model.count
-        error = ground_truth.corner_error(model.matrix, truth, pixels[0])
+        error = ground_truth.corner_error(model.matrix, truth, pixels_1)
         row["homography_error"] = error
         for threshold in PIXEL_THRESHOLDS:
             row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)

@@ -20,7 +20,7 @@ Result = TypeVar("Result")
 WARM_UP_SIZE = 192
 
 
-class StageFailure(Exception):
+class StageError(Exception):
     """A stage that did not give a result: the status of the rows that need it, and why."""
 
     def __init__(self, status: str, message: str) -> None:
@@ -30,23 +30,23 @@ class StageFailure(Exception):
 
 
 def run_stage(what: str, call: Callable[[], Result]) -> Result:
-    """Call a method and turn whatever it raises into a StageFailure that names it."""
+    """Call a method and turn whatever it raises into a StageError that names it."""
     try:
         return call()
     except MemoryError as error:
-        raise StageFailure("out_of_memory", f"{what}: {error or 'not enough memory'}") from error
+        raise StageError("out_of_memory", f"{what}: {error or 'not enough memory'}") from error
     except cv2.error as error:
         text = " ".join(str(error).split())
         memory = "Insufficient memory" in text or "bad_alloc" in text
         status = "out_of_memory" if memory else "error"
-        raise StageFailure(status, f"{what}: {text}") from error
+        raise StageError(status, f"{what}: {text}") from error
     except MethodUnavailableError as error:
-        raise StageFailure("error", str(error)) from error
+        raise StageError("error", str(error)) from error
     except ImageError as error:
-        raise StageFailure("error", str(error)) from error
+        raise StageError("error", str(error)) from error
     except Exception as error:  # a third-party method may raise anything, and costs only itself
         kind = type(error).__name__
-        raise StageFailure("error", f"{what}: {kind}: {error}") from error
+        raise StageError("error", f"{what}: {kind}: {error}") from error
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class ImageFeatures:
     pixels: Pixels
     keypoints: Keypoints
     detect_time: StageTime
-    described: dict[str, Described | StageFailure] = field(default_factory=dict)
+    described: dict[str, Described | StageError] = field(default_factory=dict)
     prepared: dict[type, Any] = field(default_factory=dict)
 
 
@@ -87,7 +87,7 @@ class FeatureExtractor:
         self._warm: set[tuple[str, str]] = set()
 
     def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
-        """Decode an image and detect its keypoints; StageFailure where that fails."""
+        """Decode an image and detect its keypoints; StageError where that fails."""
         pixels = run_stage(f"reading {image.name}", image.read)
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
@@ -101,7 +101,7 @@ class FeatureExtractor:
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage
     ) -> Described:
-        """Describe the keypoints of an image; StageFailure where that fails."""
+        """Describe the keypoints of an image; StageError where that fails."""
         kind = type(descriptor)
         if kind not in image.prepared:
             image.prepared[kind] = run_stage(what, lambda: descriptor.prepare(image.keypoints))
@@ -120,7 +120,7 @@ class FeatureExtractor:
     def _warm_up(self, call: Callable[[], Any]) -> None:
         try:
             run_stage("warming up", call)
-        except StageFailure:
+        except StageError:
             # The timed call right after fails the same way and is recorded.
             return
 

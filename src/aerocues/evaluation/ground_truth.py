@@ -17,7 +17,15 @@ def transfer(points: Points, homography: NDArray[np.float64]) -> NDArray[np.floa
     """Map (N, 2) points; those that pass through infinity become NaN."""
     homogeneous = np.column_stack([points, np.ones(len(points))]).astype(np.float64) @ homography.T
     depth = homogeneous[:, 2:]
-    return np.where(depth > 1e-12, homogeneous[:, :2] / np.where(depth > 1e-12, depth, 1), np.nan)
+    ahead = depth > 1e-12
+    moved: NDArray[np.float64] = np.where(
+        ahead, homogeneous[:, :2] / np.where(ahead, depth, 1), np.nan
+    )
+    return moved
+
+
+def _inverse(homography: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.inv(homography), np.float64)
 
 
 def transfer_errors(
@@ -31,17 +39,16 @@ def transfer_errors(
         Infinite where the true position lies behind the camera.
     """
     distance = np.linalg.norm(transfer(points_1, homography) - points_2, axis=1)
-    return np.nan_to_num(distance, nan=np.inf)
+    errors: NDArray[np.float64] = np.nan_to_num(distance, nan=np.inf)
+    return errors
 
 
-def covisible(
-    points: Points, homography: NDArray[np.float64], target: Pixels
-) -> NDArray[np.bool_]:
+def covisible(points: Points, homography: NDArray[np.float64], target: Pixels) -> NDArray[np.bool_]:
     """Which of (N, 2) points fall on valid pixels of the other image."""
     moved = transfer(points, homography)
     height, width = target.bgr.shape[:2]
     rounded = np.floor(np.nan_to_num(moved, nan=-9.0) + 0.5)
-    inside = (
+    inside: NDArray[np.bool_] = (
         (rounded[:, 0] >= 0)
         & (rounded[:, 1] >= 0)
         & (rounded[:, 0] < width)
@@ -71,14 +78,14 @@ def repeatability(
         None where one image has no covisible keypoint.
     """
     first = points_1[covisible(points_1, homography, pixels_2)]
-    second = points_2[covisible(points_2, np.linalg.inv(homography), pixels_1)]
+    second = points_2[covisible(points_2, _inverse(homography), pixels_1)]
     if not len(first) or not len(second):
         return None
     moved = transfer(first, homography)
     distance, forth = cKDTree(second).query(moved, distance_upper_bound=REPEATABILITY_RADIUS)
-    _, back = cKDTree(moved).query(second, distance_upper_bound=REPEATABILITY_RADIUS)
+    back = cKDTree(moved).query(second, distance_upper_bound=REPEATABILITY_RADIUS)[1]
     found = np.flatnonzero(np.isfinite(distance))
-    same = int((back[forth[found]] == found).sum())
+    same = int((np.asarray(back)[np.asarray(forth)[found]] == found).sum())
     return same / min(len(first), len(second))
 
 

@@ -32,7 +32,7 @@ def _ratio(top: float | None, bottom: float | None) -> float | None:
 def _excess(row: Mapping[str, Any]) -> float | None:
     if row["inliers"] is None or row["chance_inliers"] is None:
         return None
-    return max(row["inliers"] - row["chance_inliers"], 0.0)
+    return max(float(row["inliers"]) - float(row["chance_inliers"]), 0.0)
 
 
 def _repeatability(row: Mapping[str, Any]) -> float | None:
@@ -109,9 +109,7 @@ METRICS: tuple[Metric, ...] = (
         "gt_repeatability",
         _repeatability,
     ),
-    Metric(
-        "f1_score", "ratio", "higher", "harmonic mean of precision and recall", _f1_score
-    ),
+    Metric("f1_score", "ratio", "higher", "harmonic mean of precision and recall", _f1_score),
     Metric(
         "total_seconds",
         "s",

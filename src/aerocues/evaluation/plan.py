@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.cost import estimate_pair_seconds
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination

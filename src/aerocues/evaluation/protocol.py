@@ -34,7 +34,7 @@ class Verification:
 
 @dataclass(frozen=True)
 class ChanceTest:
-    """Is a model better than what wrong matches give?
+    """Asks that a model be better than those that wrong matches give.
 
     The second points of the matches are shuffled and verified again, `shuffles` times. A model
     passes if its inliers exceed `factor` times the largest count among the shuffled ones.

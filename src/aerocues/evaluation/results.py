@@ -11,7 +11,7 @@ from aerocues.errors import StoreError
 from aerocues.evaluation.store import Store
 
 if TYPE_CHECKING:
-    import polars
+    import polars as pl
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class RunStatus:
     planned: int
     done: int
     statuses: Mapping[str, int]
-    failures: polars.DataFrame
+    failures: pl.DataFrame
     exclusions: list[dict[str, Any]]
 
     @property
@@ -58,11 +58,11 @@ class Results:
         """Configuration, versions and machine of the latest run."""
         return self._store.run()
 
-    def table(self) -> polars.DataFrame:
+    def table(self) -> pl.DataFrame:
         """One row a pair and combination, in a fixed order; columns as in `schema.COLUMNS`."""
         return self._store.table()
 
-    def sql(self, query: str) -> polars.DataFrame:
+    def sql(self, query: str) -> pl.DataFrame:
         """Answer a SQL query over the table ``results``.
 
         Raises
@@ -70,11 +70,11 @@ class Results:
         StoreError
             If the query cannot be understood.
         """
-        import polars
+        import polars as pl
 
         try:
-            return polars.SQLContext(results=self.table()).execute(query, eager=True)
-        except polars.exceptions.PolarsError as error:
+            return pl.SQLContext(results=self.table()).execute(query, eager=True)
+        except pl.exceptions.PolarsError as error:
             raise StoreError(
                 f"the query failed: {' '.join(str(error).split())}; the table is called results, "
                 'and names such as "gt_precision@3" need double quotes'
@@ -82,15 +82,17 @@ class Results:
 
     def status(self) -> RunStatus:
         """How many rows are done, left and failed, by reason."""
-        import polars
+        import polars as pl
 
         table = self.table()
         counts = table.group_by("status").len().sort("len", "status", descending=[True, False])
         failures = (
-            table.filter(polars.col("status") != "ok")
+            table.filter(pl.col("status") != "ok")
             .group_by("status", "detector", "descriptor")
-            .agg(polars.len().alias("rows"), polars.col("message").drop_nulls().first())
-            .sort("status", "rows", "detector", "descriptor", descending=[False, True, False, False])
+            .agg(pl.len().alias("rows"), pl.col("message").drop_nulls().first())
+            .sort(
+                "status", "rows", "detector", "descriptor", descending=[False, True, False, False]
+            )
         )
         settings = self.settings
         return RunStatus(

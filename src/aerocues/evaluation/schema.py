@@ -85,7 +85,10 @@ RESOURCES: tuple[Column, ...] = (
 GROUND_TRUTH: tuple[Column, ...] = (
     *(
         Column(
-            f"gt_precision@{t}", "float", "ratio", f"share of matches with a true error up to {t} px"
+            f"gt_precision@{t}",
+            "float",
+            "ratio",
+            f"share of matches with a true error up to {t} px",
         )
         for t in PIXEL_THRESHOLDS
     ),
@@ -154,7 +157,7 @@ def empty_row() -> Row:
 
 def polars_schema() -> dict[str, Any]:
     """The columns with their polars types."""
-    import polars
+    import polars as pl
 
-    types = {"string": polars.String, "integer": polars.Int64, "float": polars.Float64}
+    types = {"string": pl.String, "integer": pl.Int64, "float": pl.Float64}
     return {column.name: types[column.type]() for column in COLUMNS}

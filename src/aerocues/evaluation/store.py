@@ -16,7 +16,7 @@ from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
 
 if TYPE_CHECKING:
-    import polars
+    import polars as pl
 
 PARTS = "parts"
 RUN = "run.json"
@@ -82,9 +82,9 @@ class Store:
         StoreError
             If the disk is full or the folder cannot be written any more.
         """
-        import polars
+        import polars as pl
 
-        table = polars.DataFrame(rows, schema=polars_schema(), orient="row")
+        table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
         target = self._parts / f"{name}.parquet"
         self._write(target, lambda path: table.write_parquet(path, compression="zstd"))
 
@@ -136,50 +136,50 @@ class Store:
         parts = self.parts()
         if not parts:
             return frozenset()
-        import polars
+        import polars as pl
 
         rows = self._scan(parts).select("row_key", "status", "timing")
         if timing == "exclusive":
-            rows = rows.filter(polars.col("timing") == "exclusive")
+            rows = rows.filter(pl.col("timing") == "exclusive")
         if retry_failed:
-            rows = rows.filter(~polars.col("status").is_in(RETRIED))
+            rows = rows.filter(~pl.col("status").is_in(RETRIED))
         return frozenset(self._collect(rows)["row_key"].to_list())
 
-    def table(self) -> polars.DataFrame:
+    def table(self) -> pl.DataFrame:
         """The rows that belong to the settings of the latest run, each once, in order.
 
         Where a row was measured again, the later one counts; exclusive times come before shared.
         """
-        import polars
+        import polars as pl
 
         parts = self.parts()
         schema = polars_schema()
         if not parts:
-            return polars.DataFrame(schema=schema)
+            return pl.DataFrame(schema=schema)
         identity = ["dataset", "pair", "image_1", "image_2"]
         methods = ["detector", "descriptor", "norm", "matcher"]
         rows = (
             self._scan(parts)
             .with_row_index("written")
-            .filter(polars.col("settings_key") == self.run().get("settings_key"))
-            .sort(polars.col("timing") == "exclusive", "written")
+            .filter(pl.col("settings_key") == self.run().get("settings_key"))
+            .sort(pl.col("timing") == "exclusive", "written")
             .unique([*identity, *methods], keep="last")
             .sort(*identity, *methods)
             .select(list(schema))
         )
         return self._collect(rows)
 
-    def _scan(self, parts: Sequence[Path]) -> polars.LazyFrame:
-        import polars
+    def _scan(self, parts: list[Path]) -> pl.LazyFrame:
+        import polars as pl
 
-        return polars.scan_parquet(parts, schema=polars.Schema(polars_schema()))
+        return pl.scan_parquet(parts, schema=pl.Schema(polars_schema()))
 
-    def _collect(self, rows: polars.LazyFrame) -> polars.DataFrame:
-        import polars
+    def _collect(self, rows: pl.LazyFrame) -> pl.DataFrame:
+        import polars as pl
 
         try:
             return rows.collect()
-        except (polars.exceptions.PolarsError, OSError) as error:
+        except (pl.exceptions.PolarsError, OSError) as error:
             raise StoreError(
                 f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
                 "remove the damaged part and run the same command again"

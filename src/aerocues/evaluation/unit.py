@@ -96,7 +96,11 @@ def split(unit: Unit, call: StageCall | None) -> tuple[list[Unit], Unit | None]:
         position = next(
             (i for i, work in enumerate(unit.work) if call and work.pair == call.pair), 0
         )
-        groups = (unit.work[:position], unit.work[position : position + 1], unit.work[position + 1 :])
+        groups = (
+            unit.work[:position],
+            unit.work[position : position + 1],
+            unit.work[position + 1 :],
+        )
         share = unit.cost / len(unit.work)
         return [
             replace(unit, work=group, cost=share * len(group)) for group in groups if group

@@ -71,9 +71,8 @@ def estimate_homography(
     count = len(points_1)
     if count < MINIMUM_FOR_HOMOGRAPHY:
         return Model(None, np.zeros(count, bool))
-    return _checked(
-        *cv2.findHomography(points_1, points_2, magsac_parameters(settings)), count
-    )
+    matrix, mask = cv2.findHomography(points_1, points_2, magsac_parameters(settings))
+    return _checked(matrix, mask, count)
 
 
 def chance_inliers(

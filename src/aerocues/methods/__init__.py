@@ -1,1 +1,1 @@
-
+"""What is combined: detectors, descriptors, norms and matchers."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,7 @@ class Keypoints:
         return len(self.xy)
 
     @classmethod
-    def from_xy(cls, xy: NDArray[np.floating], size: float = 31.0) -> Keypoints:
+    def from_xy(cls, xy: NDArray[np.floating[Any]], size: float = 31.0) -> Keypoints:
         """Keypoints of which only the positions are known; the rest takes neutral values."""
         points = np.ascontiguousarray(xy, dtype=np.float32).reshape(-1, 2)
         count = len(points)
@@ -57,7 +58,7 @@ class Keypoints:
             class_id=np.full(count, -1, np.int32),
         )
 
-    def take(self, which: NDArray[np.bool_] | NDArray[np.integer]) -> Keypoints:
+    def take(self, which: NDArray[np.bool_] | NDArray[np.integer[Any]]) -> Keypoints:
         """The keypoints selected by a mask or by indices, in that order."""
         return Keypoints(
             self.xy[which],
@@ -92,6 +93,15 @@ class Features:
 
     def __len__(self) -> int:
         return len(self.keypoints)
+
+
+def finite_features(keypoints: Keypoints, descriptors: DescriptorArray) -> Features:
+    """Features without the rows whose descriptor is not finite: nothing can match those."""
+    finite = np.asarray(np.isfinite(descriptors).all(axis=1))
+    if finite.all():
+        return Features(keypoints, descriptors)
+    kept: Any = descriptors[finite]
+    return Features(keypoints.take(finite), kept)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import MethodUnavailableError
-from aerocues.methods.arrays import DescriptorArray, Features, Keypoints, Matches
+from aerocues.methods.arrays import (
+    DescriptorArray,
+    Features,
+    Keypoints,
+    Matches,
+    finite_features,
+)
 from aerocues.methods.opencv import (
     BruteForceMatcher,
     FlannMatcher,
@@ -49,7 +55,7 @@ class ExtractedKeypoints(Keypoints):
 
     descriptors: DescriptorArray
 
-    def take(self, which: NDArray[np.bool_] | NDArray[np.integer]) -> ExtractedKeypoints:
+    def take(self, which: NDArray[np.bool_] | NDArray[np.integer[Any]]) -> ExtractedKeypoints:
         kept = super().take(which)
         return ExtractedKeypoints(**vars(kept), descriptors=self.descriptors[which])
 
@@ -91,9 +97,7 @@ class ArrayDescriptor:
             raise TypeError(f"a descriptor returns Features, not {type(raw).__name__}")
         if raw.descriptors.dtype != self._dtype:
             raise TypeError(f"descriptors of {raw.descriptors.dtype}, declared as {self._dtype}")
-        finite = np.isfinite(raw.descriptors).all(axis=1)
-        descriptors = np.ascontiguousarray(raw.descriptors[finite])
-        return Features(raw.keypoints.take(finite), descriptors)
+        return finite_features(raw.keypoints, raw.descriptors)
 
 
 class ArrayMatcher:

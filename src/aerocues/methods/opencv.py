@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.methods.arrays import Features, Keypoints, Matches
+from aerocues.methods.arrays import Features, Keypoints, Matches, finite_features
 from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.parameters import create_opencv
@@ -91,11 +91,7 @@ class OpenCVDescriptor:
         native, descriptors = raw
         if descriptors is None or not len(native):
             return Features(from_opencv(()), np.empty((0, self._columns), self._dtype))
-        keypoints = from_opencv(native)
-        finite = np.isfinite(descriptors).all(axis=1)
-        if finite.all():
-            return Features(keypoints, descriptors)
-        return Features(keypoints.take(finite), descriptors[finite])
+        return finite_features(from_opencv(native), descriptors)
 
 
 class BruteForceMatcher:
