@@ -105,7 +105,5 @@ def _too_few(folder: Path, paths: Sequence[Path]) -> str:
     message = f"{folder} holds no images ({', '.join(sorted(SUFFIXES))}); "
     inside = [child.name for child in subfolders(folder) if image_paths(child)]
     if inside:
-        return (
-            message + f"its folders do, such as {inside[0]}: give one of them, or flight:{folder}"
-        )
+        return f"{message}give one of its folders ({inside[0]}), uav:{folder} or flight:{folder}"
     return message + "check the path"

@@ -1,0 +1,105 @@
+"""`aerocues datasets`: lists the kinds of dataset; fetches the public ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bars
+    from rich.progress import TaskID
+
+    from aerocues.datasets.downloading import Progress
+
+app = typer.Typer(help="List the kinds of dataset, or fetch one.", no_args_is_help=False)
+
+
+@app.callback(invoke_without_command=True)
+def datasets(
+    context: typer.Context,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """List the kinds of dataset: what each needs and where to get it."""
+    if context.invoked_subcommand is None:
+        if as_json:
+            _print_json()
+        else:
+            _print_table()
+
+
+@app.command()
+def fetch(
+    name: Annotated[str, typer.Argument(help="oxford or hpatches")],
+    to: Annotated[Path, typer.Option("--to", metavar="DIR", help="Folder to put it into.")],
+    base_url: Annotated[
+        str | None, typer.Option(help="Folder of a mirror that has the same archives.")
+    ] = None,
+) -> None:
+    """Download a benchmark from its authors; goes on where an earlier attempt broke off."""
+    from rich.progress import (
+        BarColumn,
+        DownloadColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+        TransferSpeedColumn,
+    )
+
+    from aerocues.datasets.fetch import fetch as fetch_benchmark
+    from aerocues.errors import AerocuesError
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        DownloadColumn(),
+        TransferSpeedColumn(),
+        TimeRemainingColumn(),
+    )
+    try:
+        with Progress(*columns) as bars:
+            folders = fetch_benchmark(name, to, base_url=base_url, progress=_shown_on(bars))
+    except AerocuesError as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(2) from error
+    typer.echo(f"{len(folders)} sequences in {to}; measure them with: aerocues run {name}:{to}")
+
+
+def _shown_on(bars: Bars) -> Progress:
+    """A bar for each file, made when the file begins."""
+    tasks: dict[str, TaskID] = {}
+
+    def show(file: str, done: int, total: int | None) -> None:
+        if file not in tasks:
+            tasks[file] = bars.add_task(file, total=total)
+        bars.update(tasks[file], completed=done, total=total)
+
+    return show
+
+
+def _print_table() -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from aerocues.datasets.catalog import CATALOG
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("name", "write", "pairs", "ground truth", "needs", "where"):
+        table.add_column(heading, overflow="fold")
+    for kind in CATALOG:
+        row = (kind.name, kind.form, kind.pairs, kind.ground_truth, kind.needs, kind.where)
+        table.add_row(*(text.replace("[", r"\[") for text in row))
+    Console().print(table)
+    typer.echo("\nLayouts and terms: aerocues datasets --json")
+
+
+def _print_json() -> None:
+    import json
+
+    from aerocues.datasets.catalog import CATALOG
+
+    shown = ("name", "form", "pairs", "takes_pairs", "ground_truth", "geometry")
+    shown += ("needs", "layout", "where", "terms")
+    rows = [{field: getattr(kind, field) for field in shown} for kind in CATALOG]
+    typer.echo(json.dumps(rows, indent=2))

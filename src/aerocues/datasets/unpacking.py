@@ -1,0 +1,102 @@
+"""Unpacks archives of sequences: nothing lands outside the target, nothing half."""
+
+from __future__ import annotations
+
+import gzip
+import lzma
+import shutil
+import tarfile
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+from aerocues.errors import DatasetError
+
+_BROKEN = (
+    tarfile.TarError,
+    zipfile.BadZipFile,
+    NotImplementedError,
+    EOFError,
+    zlib.error,
+    gzip.BadGzipFile,
+    lzma.LZMAError,
+)
+Members = Iterator[tuple[str, IO[bytes]]]
+
+
+def unpack_sequences(archive: Path, to: Path, marker: str, single: str) -> list[str]:
+    """Put every sequence of an archive into a folder of its own below `to`.
+
+    Parameters
+    ----------
+    archive : Path
+        A tar (compressed or not) or zip file.
+    to : Path
+        Folder; a sequence that is there already is replaced.
+    marker : str
+        Name of a file that each sequence's folder has, however deep it lies in the archive.
+    single : str
+        Name of the sequence where its files lie at the top of the archive.
+
+    Returns
+    -------
+    list of str
+        Names of the sequences, sorted.
+
+    Raises
+    ------
+    DatasetError
+        If the archive is damaged, holds no sequence, or a member would land outside `to`.
+    """
+    with tempfile.TemporaryDirectory(dir=to, prefix=".unpacking-") as name:
+        place = Path(name)
+        _extract(archive, place)
+        found = {
+            single if file.parent == place else file.parent.name: file.parent
+            for file in sorted(place.rglob(marker))
+        }
+        if not found:
+            raise DatasetError(
+                f"{archive} holds no sequence (no file {marker}); remove it and retry"
+            )
+        for sequence, folder in found.items():
+            _put(folder, to / sequence)
+        place.mkdir(exist_ok=True)  # gone where it was the sequence itself
+    return sorted(found)
+
+
+def _put(folder: Path, target: Path) -> None:
+    if target.exists():
+        shutil.rmtree(target)
+    folder.chmod(0o755)
+    folder.rename(target)
+
+
+def _extract(archive: Path, place: Path) -> None:
+    root = place.resolve()
+    try:
+        with _members(archive) as members:
+            for name, content in members:
+                target = (root / PurePosixPath(name)).resolve()
+                if not target.is_relative_to(root):
+                    raise DatasetError(f"{archive} would write to {name}, outside; do not use it")
+                target.parent.mkdir(parents=True, exist_ok=True)
+                with content, target.open("wb") as file:
+                    shutil.copyfileobj(content, file)
+    except _BROKEN as error:
+        raise DatasetError(f"{archive} is damaged ({error}); remove it and fetch again") from error
+
+
+@contextmanager
+def _members(archive: Path) -> Iterator[Members]:
+    """The plain files of an archive; links and devices are passed over."""
+    if zipfile.is_zipfile(archive):
+        with zipfile.ZipFile(archive) as zipped:
+            yield ((m.filename, zipped.open(m)) for m in zipped.infolist() if not m.is_dir())
+    else:
+        with tarfile.open(archive) as tar:
+            yield ((m.name, file) for m in tar if m.isfile() and (file := tar.extractfile(m)))
