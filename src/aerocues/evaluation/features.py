@@ -23,7 +23,7 @@ WARM_UP_SIZE = 192
 class StageError(Exception):
     """A stage that did not give a result: the status of the rows that need it, and why."""
 
-    def __init__(self, status: str, message: str) -> None:
+    def __init__(self, status: str, message: str | None) -> None:
         super().__init__(message)
         self.status = status
         self.message = message

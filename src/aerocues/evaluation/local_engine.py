@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import wait
 
 from aerocues.evaluation.engine import Activity, Finished, Watch
-from aerocues.evaluation.evaluator import failed_rows
+from aerocues.evaluation.rows import failed_rows
 from aerocues.evaluation.unit import Context, Unit, split
 from aerocues.evaluation.worker_process import Loss, WorkerProcess
 

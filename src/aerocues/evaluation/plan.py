@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import islice
 
 from aerocues.datasets.dataset import Pair
@@ -50,8 +51,8 @@ def _row_key(
     context: Context,
     pair: Pair,
     combination: Combination,
-    image_keys: dict[str, str],
-    method_keys: dict[Combination, str],
+    image_keys: Mapping[str, str],
+    method_keys: Mapping[Combination, str],
 ) -> str:
     truth = None if pair.homography is None else pair.homography.tolist()
     return content_hash(
@@ -86,6 +87,63 @@ def _gray_reason(context: Context, combination: Combination) -> str | None:
     return f"{combination.descriptor} needs three colour channels, and images are gray"
 
 
+@dataclass
+class _Tally:
+    """What is counted while the work is divided."""
+
+    planned: int = 0
+    present: int = 0
+    ruled_out: Counter[tuple[Combination, str]] = field(default_factory=Counter)
+
+
+class _Planner:
+    """Divides the work on one dataset."""
+
+    def __init__(
+        self,
+        context: Context,
+        combinations: Sequence[Combination],
+        image_keys: Mapping[str, str],
+        is_present: Callable[[str], bool],
+    ) -> None:
+        self._context = context
+        self._image_keys = image_keys
+        self._is_present = is_present
+        self._gray = {image.name for image in context.dataset.images if image.source.is_gray()}
+        self._method_keys = {c: content_hash(context.methods.parameters(c)) for c in combinations}
+        self.tally = _Tally()
+
+    def unit(self, detector: str, group: Sequence[Pair]) -> Unit | None:
+        """What is left to do for a detector on consecutive pairs; None if nothing is."""
+        combinations = [c for c in self._method_keys if c.detector == detector]
+        work = tuple(
+            part for pair in group if (part := self._pair_work(pair, combinations)).combinations
+        )
+        if not work:
+            return None
+        methods = self._context.methods
+        cost = sum(estimate_pair_seconds(methods, detector, part.combinations) for part in work)
+        return Unit(detector, work, cost)
+
+    def _pair_work(self, pair: Pair, combinations: Sequence[Combination]) -> PairWork:
+        chosen: list[Combination] = []
+        keys: list[str] = []
+        is_gray = pair.image_1 in self._gray or pair.image_2 in self._gray
+        for combination in combinations:
+            reason = _gray_reason(self._context, combination) if is_gray else None
+            if reason:
+                self.tally.ruled_out[combination, reason] += 1
+                continue
+            self.tally.planned += 1
+            key = _row_key(self._context, pair, combination, self._image_keys, self._method_keys)
+            if self._is_present(key):
+                self.tally.present += 1
+            else:
+                chosen.append(combination)
+                keys.append(key)
+        return PairWork(pair.index, tuple(chosen), tuple(keys))
+
+
 def make_plan(
     context: Context,
     combinations: Sequence[Combination],
@@ -109,44 +167,23 @@ def make_plan(
     ImageError
         If a file cannot be read at all.
     """
-    dataset = context.dataset
+    images = context.dataset.images
     image_keys: dict[str, str] = {}
-    for done, image in enumerate(dataset.images):
+    for done, image in enumerate(images, start=1):
         image_keys[image.name] = image.source.content_key()
-        progress(done + 1, len(dataset.images))
-    gray = {image.name for image in dataset.images if image.source.is_gray()}
-    method_keys = {c: content_hash(context.methods.parameters(c)) for c in combinations}
-    units: list[Unit] = []
-    planned = present = 0
-    ruled_out: dict[tuple[Combination, str], int] = {}
-    for group in _groups(dataset.pairs):
-        for detector in dict.fromkeys(c.detector for c in combinations):
-            work: list[PairWork] = []
-            for pair in group:
-                todo: list[tuple[Combination, str]] = []
-                for combination in (c for c in combinations if c.detector == detector):
-                    reason = _gray_reason(context, combination)
-                    if reason and (pair.image_1 in gray or pair.image_2 in gray):
-                        key = (combination, reason)
-                        ruled_out[key] = ruled_out.get(key, 0) + 1
-                        continue
-                    planned += 1
-                    row_key = _row_key(context, pair, combination, image_keys, method_keys)
-                    if is_present(row_key):
-                        present += 1
-                    else:
-                        todo.append((combination, row_key))
-                if todo:
-                    chosen, keys = zip(*todo, strict=True)
-                    work.append(PairWork(pair.index, chosen, keys))
-            if work:
-                cost = sum(
-                    estimate_pair_seconds(context.methods, detector, part.combinations)
-                    for part in work
-                )
-                units.append(Unit(detector, tuple(work), cost))
+        progress(done, len(images))
+    planner = _Planner(context, combinations, image_keys, is_present)
+    detectors = dict.fromkeys(combination.detector for combination in combinations)
+    units = [
+        unit
+        for group in _groups(context.dataset.pairs)
+        for detector in detectors
+        if (unit := planner.unit(detector, group)) is not None
+    ]
     units.sort(key=lambda unit: -unit.cost)
+    tally = planner.tally
     exclusions = tuple(
-        Exclusion(combination, reason, pairs) for (combination, reason), pairs in ruled_out.items()
+        Exclusion(combination, reason, pairs)
+        for (combination, reason), pairs in tally.ruled_out.items()
     )
-    return Plan(tuple(units), planned, present, exclusions)
+    return Plan(tuple(units), tally.planned, tally.present, exclusions)

@@ -1,0 +1,45 @@
+"""Rows before they are measured: what names them, and those of work that could not be done."""
+
+from __future__ import annotations
+
+import cv2
+
+from aerocues.datasets.dataset import Pair
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.schema import empty_row
+from aerocues.evaluation.unit import Context, Unit
+from aerocues.methods.combination import Combination
+
+
+def begin_row(context: Context, pair: Pair, combination: Combination, key: str) -> Row:
+    """A row that says what it is about and where it comes from; the rest is unknown."""
+    row = empty_row()
+    row.update(
+        dataset=context.dataset.name,
+        sequence=pair.sequence,
+        pair=pair.index,
+        image_1=pair.image_1,
+        image_2=pair.image_2,
+        detector=combination.detector,
+        descriptor=combination.descriptor,
+        norm=combination.norm,
+        matcher=combination.matcher,
+        preset=context.preset,
+        opencv_version=cv2.__version__,
+        machine=context.machine,
+        seed=context.protocol.seed,
+        timing=context.protocol.timing,
+        settings_key=context.settings_key,
+        row_key=key,
+    )
+    return row
+
+
+def failed_rows(context: Context, unit: Unit, status: str, message: str) -> list[Row]:
+    """Rows for work that could not be done."""
+    return [
+        begin_row(context, context.dataset.pairs[work.pair], combination, key)
+        | {"status": status, "message": message}
+        for work in unit.work
+        for combination, key in zip(work.combinations, work.row_keys, strict=True)
+    ]
