@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -36,7 +36,9 @@ Watch = Callable[[Sequence[Activity]], None]
 class Engine(Protocol):
     """Runs units somewhere. The order in which they finish is not defined; their rows are."""
 
-    def run(self, units: Sequence[Unit], context: Context, watch: Watch) -> Iterator[Finished]:
+    def run(
+        self, units: Sequence[Unit], context: Context, watch: Watch
+    ) -> Generator[Finished, None, None]:
         """Run all units.
 
         Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import collections
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 
@@ -33,7 +33,9 @@ class LocalEngine:
     timeout: float
     memory_limit_mb: int
 
-    def run(self, units: Sequence[Unit], context: Context, watch: Watch) -> Iterator[Finished]:
+    def run(
+        self, units: Sequence[Unit], context: Context, watch: Watch
+    ) -> Generator[Finished, None, None]:
         """Run all units; see `Engine.run`."""
         queue = collections.deque(units)
         pool = _Pool(self, context)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -14,7 +15,7 @@ from aerocues.evaluation.engine import Activity, Engine, Finished
 from aerocues.evaluation.plan import Plan, content_hash, make_plan
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
 from aerocues.evaluation.results import Results
-from aerocues.evaluation.store import Store
+from aerocues.evaluation.store import RUN, Store
 from aerocues.evaluation.unit import Context
 from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.methods.combination import Combination
@@ -23,7 +24,7 @@ from aerocues.methods.presets import preset_named
 from aerocues.methods.selection import select
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
 
 DEFAULT_TIMEOUT = 600.0
 
@@ -111,15 +112,10 @@ def _context(dataset: Dataset, preset: str, seed: int, timing: Timing) -> Contex
     )
 
 
-def _chosen(
-    context: Context, combinations: str | Iterable[str | Combination] | None
-) -> list[Combination]:
-    patterns = (
-        combinations
-        if combinations is None or isinstance(combinations, str)
-        else [str(combination) for combination in combinations]
-    )
-    return select(context.methods, patterns)
+def _patterns(combinations: str | Iterable[str | Combination] | None) -> str | list[str] | None:
+    if combinations is None or isinstance(combinations, str):
+        return combinations
+    return [str(combination) for combination in combinations]
 
 
 def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) -> dict[str, object]:
@@ -154,6 +150,9 @@ def run(
     combinations: str | Iterable[str | Combination] | None = None,
     output: str | Path = "results",
     *,
+    detectors: str | Iterable[str] | None = None,
+    descriptors: str | Iterable[str] | None = None,
+    everything: bool = False,
     preset: str = "default",
     seed: int = 0,
     timing: Timing = "shared",
@@ -175,6 +174,8 @@ def run(
         default.
     output : path
         Results folder, made where it is missing.
+    detectors, descriptors, everything
+        Narrow or widen the choice of combinations; see `aerocues.methods.selection.select`.
     preset : str
         Preset of parameters and protocol; see `aerocues.methods.presets`.
     seed : int
@@ -202,7 +203,13 @@ def run(
     observer = observer or Observer()
     engine = engine or local_engine(limits or Limits(), timing)
     context = _context(dataset, preset, seed, timing)
-    chosen = _chosen(context, combinations)
+    chosen = select(
+        context.methods,
+        _patterns(combinations),
+        detectors=detectors,
+        descriptors=descriptors,
+        everything=everything,
+    )
     store = Store.create(Path(output))
     present = store.present(timing, retry_failed=retry_failed)
     plan = make_plan(context, chosen, present.__contains__, observer.hashing)
@@ -212,8 +219,41 @@ def run(
     return Results(store.folder)
 
 
-def _measure(finished_units: Iterator[Finished], store: Store, observer: Observer) -> None:
-    for finished in finished_units:
-        name = content_hash([row["row_key"] for row in finished.rows])
-        store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
-        observer.finished(finished)
+def plan_run(
+    dataset: Dataset,
+    combinations: str | Iterable[str | Combination] | None = None,
+    output: str | Path = "results",
+    *,
+    detectors: str | Iterable[str] | None = None,
+    descriptors: str | Iterable[str] | None = None,
+    everything: bool = False,
+    preset: str = "default",
+    seed: int = 0,
+    timing: Timing = "shared",
+    retry_failed: bool = False,
+    observer: Observer | None = None,
+) -> Plan:
+    """What `run` would do with the same arguments; nothing is measured or written."""
+    context = _context(dataset, preset, seed, timing)
+    chosen = select(
+        context.methods,
+        _patterns(combinations),
+        detectors=detectors,
+        descriptors=descriptors,
+        everything=everything,
+    )
+    present: frozenset[str] = frozenset()
+    if (Path(output) / RUN).is_file():
+        present = Store.open(Path(output)).present(timing, retry_failed=retry_failed)
+    hashing = (observer or Observer()).hashing
+    return make_plan(context, chosen, present.__contains__, hashing)
+
+
+def _measure(
+    finished_units: Generator[Finished, None, None], store: Store, observer: Observer
+) -> None:
+    with contextlib.closing(finished_units):  # an interruption ends the workers here and now
+        for finished in finished_units:
+            name = content_hash([row["row_key"] for row in finished.rows])
+            store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
+            observer.finished(finished)
