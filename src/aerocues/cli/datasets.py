@@ -81,25 +81,32 @@ def _shown_on(bars: Bars) -> Progress:
 def _print_table() -> None:
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text
 
     from aerocues.datasets.catalog import CATALOG
 
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for heading in ("name", "write", "pairs", "ground truth", "needs", "where"):
-        table.add_column(heading, overflow="fold")
+    table = Table(box=None, show_header=False, pad_edge=False)
     for kind in CATALOG:
-        row = (kind.name, kind.form, kind.pairs, kind.ground_truth, kind.needs, kind.where)
-        table.add_row(*(text.replace("[", r"\[") for text in row))
+        table.add_row(Text(kind.form, style="bold"), Text())
+        for label, value in (
+            ("pairs", kind.pairs),
+            ("ground truth", kind.ground_truth),
+            ("needs", kind.needs),
+            ("where", kind.where),
+        ):
+            table.add_row(Text(f"  {label}"), Text(value))
     Console().print(table)
-    typer.echo("\nLayouts and terms: aerocues datasets --json")
+    typer.echo("Layouts and terms: aerocues datasets --json")
 
 
 def _print_json() -> None:
     import json
+    from dataclasses import fields
 
     from aerocues.datasets.catalog import CATALOG
 
-    shown = ("name", "form", "pairs", "takes_pairs", "ground_truth", "geometry")
-    shown += ("needs", "layout", "where", "terms")
-    rows = [{field: getattr(kind, field) for field in shown} for kind in CATALOG]
+    rows = [
+        {field.name: getattr(kind, field.name) for field in fields(kind) if field.name != "load"}
+        for kind in CATALOG
+    ]
     typer.echo(json.dumps(rows, indent=2))

@@ -69,7 +69,8 @@ class FileSource:
         -------
         Pixels
             At its final size. Pixels that are wholly transparent (alpha 0) or not finite are black
-            and not valid; otherwise alpha is dropped.
+            and not valid; otherwise alpha is dropped (in 8-bit TIFF, what is partly transparent is
+            laid over black).
 
         Raises
         ------

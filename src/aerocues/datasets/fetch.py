@@ -222,11 +222,17 @@ def _download(benchmark: Benchmark, archive: Archive, record: _Record, how: _How
             return _retrieve(url, location, record, Downloader(part, progress, attempts, pause))
         except DownloadError as error:
             failures.append(str(error))
-    by_hand = " or ".join(location.url for location in archive.locations)
     raise DownloadError(
-        f"{'; '.join(failures)}; get {by_hand} on another machine, put it into {record.folder} "
-        f"and run this again, or unpack it there so that there are {benchmark.layout}"
+        f"{'; '.join(failures)}; on a machine that reaches it, get {_by_hand(benchmark, record)}, "
+        f"put that into {record.folder} and run this again, or unpack it there yourself so that "
+        f"there are {benchmark.layout}"
     )
+
+
+def _by_hand(benchmark: Benchmark, record: _Record) -> str:
+    """The addresses of all archives that are still missing."""
+    missing = [archive for archive in benchmark.archives if record.unpacked(archive) is None]
+    return ", ".join(" or ".join(place.url for place in row.locations) for row in missing)
 
 
 def _retrieve(url: str, location: Location, record: _Record, downloader: Downloader) -> Path:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import GpsPosition
+from aerocues.datasets.header import read_exif
+from aerocues.errors import ImageError
 
 _GPS_DIRECTORY = 0x8825
 _LATITUDE_REF, _LATITUDE, _LONGITUDE_REF, _LONGITUDE, _ALTITUDE_REF, _ALTITUDE = range(1, 7)
@@ -24,13 +26,9 @@ def read_gps(path: Path) -> GpsPosition | None:
 
     Latitude and longitude both exactly 0 mean that the receiver had no fix.
     """
-    from PIL import Image as PillowImage
-    from PIL import UnidentifiedImageError
-
     try:
-        with PillowImage.open(path) as image:
-            tags = image.getexif().get_ifd(_GPS_DIRECTORY)
-    except (OSError, UnidentifiedImageError, PillowImage.DecompressionBombError):
+        tags = read_exif(path).get_ifd(_GPS_DIRECTORY)
+    except ImageError:
         return None
     except (SyntaxError, ValueError, KeyError, TypeError):  # broken EXIF
         return None

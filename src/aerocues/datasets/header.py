@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeVar
 
 from aerocues.errors import ImageError
 
@@ -75,9 +76,21 @@ def read_header(file: Path | bytes, name: str) -> Header:
     ImageError
         If the file cannot be opened or is not an image of a known format; `name` is in the message.
     """
+    return _read(file, name, _parse)
+
+
+def read_exif(file: Path) -> Any:
+    """The EXIF data of an image file, as Pillow's mapping; ImageError as in `read_header`."""
+    return _read(file, str(file), lambda stream: _exif(_open(stream)[1]))
+
+
+_Result = TypeVar("_Result")
+
+
+def _read(file: Path | bytes, name: str, parse: Callable[[IO[bytes]], _Result]) -> _Result:
     try:
         with BytesIO(file) if isinstance(file, bytes) else file.open("rb") as stream:
-            return _parse(stream)
+            return parse(stream)
     except OSError as error:
         if isinstance(file, Path) and error.errno is not None:
             raise ImageError(unreadable(name, error)) from error
@@ -100,19 +113,31 @@ def _not_an_image(name: str) -> ImageError:
 
 
 def _parse(stream: IO[bytes]) -> Header:
+    name, image = _open(stream)
+    if name == "TIFF":
+        width, height = image.tag_v2[_TIFF_WIDTH], image.tag_v2[_TIFF_HEIGHT]
+        orientation = image.tag_v2.get(_ORIENTATION, 1)
+    else:
+        width, height = image.size
+        orientation = _exif(image).get(_ORIENTATION, 1)
+    valid = isinstance(orientation, int) and 1 <= orientation <= 8
+    return Header(name, image.mode, int(width), int(height), orientation if valid else 1)
+
+
+def _open(stream: IO[bytes]) -> tuple[str, Any]:
+    """The format and Pillow's reader, with the header read and no pixels."""
     name = _format(stream.read(16))
     stream.seek(0)
     # The readers are called directly: Image.open refuses images above a size that is global state,
     # and opens some camera JPEGs as a series of pictures.
-    with _reader(name)(stream) as image:
-        if name == "TIFF":
-            width, height = image.tag_v2[_TIFF_WIDTH], image.tag_v2[_TIFF_HEIGHT]
-            orientation = image.tag_v2.get(_ORIENTATION, 1)
-        else:
-            width, height = image.size
-            orientation = image.getexif().get(_ORIENTATION, 1)
-        valid = isinstance(orientation, int) and 1 <= orientation <= 8
-        return Header(name, image.mode, int(width), int(height), orientation if valid else 1)
+    return name, _reader(name)(stream)
+
+
+def _exif(image: Any) -> Any:
+    from PIL import Image
+
+    # Not image.getexif(): that of PNG decodes all pixels to look behind them.
+    return Image.Image.getexif(image)
 
 
 def _format(start: bytes) -> str:

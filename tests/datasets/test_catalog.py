@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aerocues.datasets.catalog import CATALOG, open_dataset
+from aerocues.errors import DatasetError
+
+
+def test_the_catalog_is_complete() -> None:
+    names = [kind.name for kind in CATALOG]
+    assert names == [
+        "synthetic", "synthetic-extended", "oxford", "hpatches", "uav", "flight", "folder",
+    ]  # fmt: skip
+    for kind in CATALOG:
+        assert all([kind.pairs, kind.ground_truth, kind.needs, kind.layout, kind.where, kind.terms])
+
+
+def test_geometry_and_number_of_pairs_agree_with_the_catalog() -> None:
+    for kind in CATALOG[:2]:
+        dataset = open_dataset(kind.name)
+        assert str(len(dataset.pairs)) in kind.pairs
+        assert dataset.geometry == kind.geometry
+        assert dataset.name == kind.name
+
+
+@pytest.mark.parametrize(
+    ("spec", "said"),
+    [
+        ("oxfrd:somewhere", "did you mean oxford"),
+        ("hpatch", "did you mean hpatches"),
+        ("/no/such/place", r"synthetic\[:IMAGE\], .*flight:DIR"),
+        ("oxford", "oxford needs a folder; write oxford:DIR"),
+        ("flight:", "flight needs a folder"),
+        ("uav:/no/such/place", "no folder /no/such/place"),
+        ("synthetic:/no/such.png", r"/no/such\.png: No such file"),
+    ],
+)
+def test_what_cannot_be_opened_says_why(spec: str, said: str) -> None:
+    with pytest.raises(DatasetError, match=said):
+        open_dataset(spec)
+
+
+def test_a_file_is_no_dataset(image_folder: Path) -> None:
+    with pytest.raises(DatasetError, match="synthetic:"):
+        open_dataset(str(image_folder / "img2.png"))
+
+
+def test_options_that_make_no_sense(image_folder: Path) -> None:
+    with pytest.raises(DatasetError, match="leave --pairs out"):
+        open_dataset("synthetic", pairs="exhaustive")
+    with pytest.raises(DatasetError, match="--limit 0"):
+        open_dataset("synthetic", limit=0)
+    with pytest.raises(DatasetError, match="--max-width 3"):
+        open_dataset(str(image_folder), max_width=3)
+    with pytest.raises(DatasetError, match="histogram"):
+        open_dataset(str(image_folder), equalize="loud")
+
+
+def test_a_folder_called_like_a_kind(
+    image_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    image_folder.rename(tmp_path / "oxford")
+    monkeypatch.chdir(tmp_path)
+    assert open_dataset("oxford").name == "oxford"
+    assert open_dataset("oxford").geometry == "epipolar"
+    assert open_dataset("folder:oxford").name == "oxford"
+
+
+def test_limit_keeps_the_first_pairs_and_their_images() -> None:
+    dataset = open_dataset("synthetic", limit=2)
+    assert [image.name for image in dataset.images] == [
+        "original",
+        "rotation_015",
+        "rotation_030",
+    ]
+    assert len(dataset.pairs) == 2
+
+
+def test_sequences_are_globs_and_pairs_keep_their_index() -> None:
+    dataset = open_dataset("synthetic", sequences=["SCALE", "int*"], limit=7)
+    assert [p.index for p in dataset.pairs] == list(range(6, 13))
+    assert {p.sequence for p in dataset.pairs} == {"scale", "intensity"}
+    with pytest.raises(DatasetError, match="there are: rotation, scale, intensity"):
+        open_dataset("synthetic", sequences=["tilt"])
