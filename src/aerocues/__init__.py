@@ -1,1 +1,72 @@
-"""aerocues."""
+"""Choose local features for 3D reconstruction from drone images.
+
+    import aerocues
+
+    dataset = aerocues.open_dataset("photos", max_width=1000)
+    results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
+    print(results.table())
+
+Everything here is loaded when it is first used, so that importing the package costs nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from aerocues.datasets.catalog import open_dataset
+    from aerocues.datasets.dataset import Dataset
+    from aerocues.errors import AerocuesError
+    from aerocues.evaluation.results import Results
+    from aerocues.evaluation.run import Limits, Observer, run
+    from aerocues.evaluation.summary import best_combinations
+    from aerocues.methods.arrays import Features, Keypoints, Matches
+    from aerocues.methods.combination import Combination
+
+    __version__: str
+
+_MODULES = {
+    "open_dataset": "datasets.catalog",
+    "Dataset": "datasets.dataset",
+    "run": "evaluation.run",
+    "Limits": "evaluation.run",
+    "Observer": "evaluation.run",
+    "Results": "evaluation.results",
+    "best_combinations": "evaluation.summary",
+    "Combination": "methods.combination",
+    "Keypoints": "methods.arrays",
+    "Features": "methods.arrays",
+    "Matches": "methods.arrays",
+    "AerocuesError": "errors",
+}
+
+__all__ = [
+    "AerocuesError",
+    "Combination",
+    "Dataset",
+    "Features",
+    "Keypoints",
+    "Limits",
+    "Matches",
+    "Observer",
+    "Results",
+    "__version__",
+    "best_combinations",
+    "open_dataset",
+    "run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is asked for."""
+    from importlib import import_module, metadata
+
+    if name == "__version__":
+        return metadata.version("aerocues")
+    if name not in _MODULES:
+        raise AttributeError(f"module 'aerocues' has no attribute {name!r}")
+    return getattr(import_module(f"aerocues.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

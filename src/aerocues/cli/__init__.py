@@ -1,1 +1,21 @@
+"""The command line: one thin file a command."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NoReturn
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line and exit: 0 done, 2 a mistake of input, 130 or 143 interrupted.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What stands after ``aerocues``; by default what this process was started with.
+    """
+    import sys
+
+    from aerocues.cli.program import exit_code
+
+    sys.exit(exit_code(sys.argv[1:] if arguments is None else arguments))

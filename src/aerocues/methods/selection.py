@@ -14,7 +14,8 @@ from aerocues.methods.registry import Methods
 WILDCARDS = frozenset("*?[")
 
 
-def _split(names: str | Iterable[str] | None) -> list[str]:
+def split_names(names: str | Iterable[str] | None) -> list[str]:
+    """Names or patterns one by one, in upper case; a text is split at its commas."""
     if names is None:
         return []
     parts = names.split(",") if isinstance(names, str) else list(names)
@@ -105,7 +106,7 @@ def select(
     """
     can_run = runnable(methods)
     usual = set(can_run if everything else meaningful(methods))
-    wanted = _split(patterns)
+    wanted = split_names(patterns)
     includes = [pattern for pattern in wanted if not pattern.startswith("!")]
     excludes = [pattern[1:] for pattern in wanted if pattern.startswith("!")]
     chosen: set[Combination] = set() if includes else set(usual)
@@ -121,8 +122,8 @@ def select(
         if candidate in chosen
         and not any(fnmatchcase(str(candidate), pattern) for pattern in excludes)
     ]
-    kept = _by_component(kept, "detector", _split(detectors))
-    kept = _by_component(kept, "descriptor", _split(descriptors))
+    kept = _by_component(kept, "detector", split_names(detectors))
+    kept = _by_component(kept, "descriptor", split_names(descriptors))
     if not kept:
         raise SelectionError("the selection is empty; take out fewer combinations")
     return kept

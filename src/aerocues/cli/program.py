@@ -1,0 +1,96 @@
+"""All commands together, and how errors become one line and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Annotated, Any, cast
+
+import typer
+
+from aerocues.cli import datasets, methods, results, run, status
+from aerocues.errors import AerocuesError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+BROKEN_PIPE = 141
+# typer keeps the class that all mistakes on the command line share to itself.
+UsageError = cast(
+    "type[Exception]",
+    next(kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "ClickException"),
+)
+
+app = typer.Typer(
+    help="Choose local features (detector, descriptor, matcher) for 3D models from drone images.",
+    add_completion=False,
+    rich_markup_mode=None,
+)
+app.command("run")(run.run)
+app.command("status")(status.status)
+app.command("results")(results.results)
+app.add_typer(methods.app, name="methods")
+app.add_typer(datasets.app, name="datasets")
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        import aerocues
+
+        typer.echo(f"aerocues {aerocues.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version.", callback=_print_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """Options of the program itself."""
+
+
+def exit_code(arguments: Sequence[str]) -> int:
+    """Run a command; what goes wrong with its input is told in one line on standard error."""
+    try:
+        return _run(arguments)
+    except BrokenPipeError:
+        # The reader (head, less) has seen enough. Python would complain when it flushes at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+    except UsageError as error:
+        return _complain(_told(error))
+    except AerocuesError as error:
+        return _complain(str(error))
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{where}{error.strerror or error}; check the path, access and free space")
+    except (KeyboardInterrupt, typer.Abort):
+        sys.stderr.write("interrupted\n")
+        return INTERRUPTED
+
+
+def _run(arguments: Sequence[str]) -> int:
+    command = typer.main.get_command(app)
+    try:
+        with command.make_context("aerocues", list(arguments) or ["--help"]) as context:
+            command.invoke(context)
+    except typer.Exit as finished:
+        return finished.exit_code
+    finally:
+        sys.stdout.flush()
+    return 0
+
+
+def _told(error: Any) -> str:
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context else "aerocues"
+    return f"{error.format_message().rstrip('.')}; see '{command} --help'"
+
+
+def _complain(message: str) -> int:
+    sys.stderr.write(f"error: {' '.join(message.split())}\n")
+    return BAD_INPUT

@@ -1,0 +1,119 @@
+"""How a run goes on: the figures behind both displays, and plain lines for files and pipes."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from aerocues.cli.console import count
+from aerocues.evaluation.engine import Activity, Finished
+from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.run import Observer
+
+SECONDS_BETWEEN_LINES = 10.0
+SHARE_BETWEEN_LINES = 0.1
+LONGEST_SILENCE = 60.0
+
+
+def spoken_seconds(seconds: float) -> str:
+    """``8 s``, ``4 min 05 s``, ``2 h 10 min``."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+@dataclass
+class Tally(Observer):
+    """What has been done so far; `clock` gives seconds."""
+
+    clock: Callable[[], float] = time.monotonic
+    plan: Plan | None = None
+    rows_measured: int = 0
+    statuses: Counter[str] = field(default_factory=Counter)
+    _cost_total: float = 0.0
+    _cost_done: float = 0.0
+    _began: float = 0.0
+    _latest: float = 0.0
+
+    def planned(self, plan: Plan) -> None:
+        self.plan = plan
+        self._cost_total = sum(unit.cost for unit in plan.units)
+        self._began = self._latest = self.clock()
+
+    def finished(self, finished: Finished) -> None:
+        self.rows_measured += len(finished.rows)
+        self.statuses.update(str(row["status"]) for row in finished.rows)
+        self._cost_done = min(self._cost_done + finished.unit.cost, self._cost_total)
+        self._latest = self.clock()
+
+    @property
+    def rows_stored(self) -> int:
+        return self.rows_measured + (self.plan.rows_present if self.plan else 0)
+
+    @property
+    def rows_planned(self) -> int:
+        return self.plan.rows_planned if self.plan else 0
+
+    @property
+    def share(self) -> float:
+        """Share of the rows that are there, from 0 to 1."""
+        return self.rows_stored / self.rows_planned if self.rows_planned else 1.0
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the work began."""
+        return self.clock() - self._began
+
+    def seconds_left(self) -> float | None:
+        """Seconds to go, by the cost of what is done and left; None as long as nothing is done."""
+        if not self._cost_done:
+            return None
+        pace = (self._latest - self._began) / self._cost_done
+        to_go = (self._cost_total - self._cost_done) * pace
+        return max(to_go - (self.clock() - self._latest), 0.0)
+
+    def progress(self) -> str:
+        """``1,200 of 13,600 rows (9 %), about 12 min 05 s left``."""
+        left = self.seconds_left()
+        ending = "" if left is None else f", about {spoken_seconds(left)} left"
+        share = f"{int(100 * self.share)} %"
+        return f"{self.rows_stored:,} of {self.rows_planned:,} rows ({share}){ending}"
+
+    def outcomes(self) -> str:
+        """``ok 1,100, chance 80, crashed 20``: of what this run measured, ok first."""
+        ordered = sorted(self.statuses.items(), key=lambda item: (item[0] != "ok", -item[1]))
+        return ", ".join(f"{status} {number:,}" for status, number in ordered)
+
+
+@dataclass
+class PlainLines(Tally):
+    """One line now and then on standard error."""
+
+    _line_time: float = 0.0
+    _line_share: float = 0.0
+
+    def planned(self, plan: Plan) -> None:
+        super().planned(plan)
+        self._line_time, self._line_share = self.clock(), self.share
+        if not plan.rows_left:
+            return
+        present = f"; {plan.rows_present:,} rows are there already" if plan.rows_present else ""
+        units = count(len(plan.units), "unit")
+        self._say(f"{count(plan.rows_left, 'row')} to measure in {units} of work{present}")
+
+    def working(self, activities: Sequence[Activity]) -> None:
+        silent = self.clock() - self._line_time
+        moved = self.share - self._line_share >= SHARE_BETWEEN_LINES
+        if silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
+            self._line_time, self._line_share = self.clock(), self.share
+            self._say("; ".join(filter(None, (self.progress(), self.outcomes()))))
+
+    def _say(self, line: str) -> None:
+        sys.stderr.write(f"{line}\n")
+        sys.stderr.flush()

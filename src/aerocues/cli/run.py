@@ -1,0 +1,184 @@
+"""`aerocues run`: measures combinations on the pairs of a dataset."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from aerocues.cli.progress import Tally
+    from aerocues.evaluation.results import Results
+
+MEGABYTES = 1024
+
+
+class Timing(StrEnum):
+    """Values of ``--timing``."""
+
+    SHARED = "shared"
+    EXCLUSIVE = "exclusive"
+
+
+def run(
+    dataset: Annotated[
+        str, typer.Argument(help="A folder, or one of the kinds that 'aerocues datasets' lists.")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", help="Results folder: made or continued."),
+    ],
+    combinations: Annotated[
+        str | None, typer.Option(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,!*-BOOST-*'.")
+    ] = None,
+    detectors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
+    descriptors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="All that can run, not only those that mean something.")
+    ] = False,
+    preset: Annotated[
+        str, typer.Option(metavar="NAME", help="Parameters and protocol: default or thesis.")
+    ] = "default",
+    pairs: Annotated[
+        str | None,
+        typer.Option(help="consecutive[:K], exhaustive, gps[:K|:50m] or a file of pairs."),
+    ] = None,
+    limit: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="The first N pairs only.")
+    ] = None,
+    sequences: Annotated[
+        str | None, typer.Option(metavar="GLOBS", help="These sequences only, such as 'graf,b*'.")
+    ] = None,
+    max_width: Annotated[
+        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+    ] = None,
+    equalize: Annotated[
+        str, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
+    ] = "none",
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
+    ] = None,
+    timing: Annotated[
+        Timing, typer.Option(help="exclusive: one worker with the machine to itself.")
+    ] = Timing.SHARED,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
+    ] = 0,
+    timeout: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="CPU time that one call may use; 600 by default."),
+    ] = None,
+    memory_limit: Annotated[
+        float | None,
+        typer.Option(min=0.1, metavar="GB", help="Memory of a worker; its share of 80 %."),
+    ] = None,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Measure again what failed on this machine.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show the plan; measure and write nothing.")
+    ] = False,
+    top: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Length of the table at the end.")
+    ] = 15,
+) -> None:
+    """Measure combinations on the image pairs of a dataset.
+
+    Each result is kept as soon as it is there. Stop at any moment and run the same command again:
+    what is finished is not measured twice.
+    """
+    from aerocues.cli.interruption import interruptible
+    from aerocues.datasets.catalog import open_dataset
+
+    with interruptible():
+        images = open_dataset(
+            dataset,
+            pairs=pairs,
+            max_width=max_width,
+            equalize=equalize,
+            limit=limit,
+            sequences=sequences.split(",") if sequences else None,
+        )
+        arguments: dict[str, Any] = {
+            "dataset": images,
+            "combinations": combinations,
+            "output": output,
+            "detectors": detectors,
+            "descriptors": descriptors,
+            "everything": everything,
+            "preset": preset,
+            "seed": seed,
+            "timing": timing.value,
+            "retry_failed": retry_failed,
+        }
+        if dry_run:
+            from aerocues.cli.dry_run import print_plan
+
+            print_plan(arguments)
+            return
+        arguments["limits"] = _limits(workers, timeout, memory_limit)
+        _print_results(_measure(arguments), images.name, top)
+
+
+def _limits(workers: int | None, timeout: float | None, memory_limit: float | None) -> Any:
+    from aerocues.evaluation.run import DEFAULT_TIMEOUT, Limits
+
+    return Limits(
+        workers=workers,
+        timeout=DEFAULT_TIMEOUT if timeout is None else timeout,
+        memory_limit_mb=None if memory_limit is None else int(memory_limit * MEGABYTES),
+    )
+
+
+def _measure(arguments: dict[str, Any]) -> Results:
+    import aerocues
+    from aerocues.cli.interruption import Interrupted
+    from aerocues.cli.live import display
+
+    tally: Tally | None = None
+    try:
+        with display() as tally:
+            results = aerocues.run(**arguments, observer=tally)
+    except Interrupted as interruption:
+        stored = f"; {tally.rows_stored:,} rows are stored" if tally and tally.plan else ""
+        sys.stderr.write(f"interrupted{stored}; run the same command again to go on\n")
+        raise typer.Exit(interruption.exit_code) from None
+    _report_end(tally)
+    return results
+
+
+def _report_end(tally: Tally) -> None:
+    from aerocues.cli.console import count
+    from aerocues.cli.progress import spoken_seconds
+
+    if tally.rows_measured:
+        measured = count(tally.rows_measured, "row")
+        line = f"measured {measured} in {spoken_seconds(tally.elapsed)}"
+    else:
+        line = f"nothing to measure: all {count(tally.rows_stored, 'row')} are there already"
+    sys.stderr.write(f"{line}\n\n")
+
+
+def _print_results(results: Results, dataset: str, top: int) -> None:
+    import polars as pl
+
+    from aerocues.cli.console import standard_output
+    from aerocues.cli.ranking import print_ranking
+
+    table = results.table().filter(pl.col("dataset") == dataset)
+    print_ranking(table, top)
+    console = standard_output()
+    counts = table["status"].value_counts(sort=True).iter_rows()
+    by_status = ", ".join(f"{status} {number:,}" for status, number in counts)
+    folder = shlex.quote(str(results.folder))
+    for line in (
+        f"\nrows     {len(table):,}: {by_status}",
+        f"results  {results.folder}",
+        f"next     aerocues status {folder}",
+        f"         aerocues results {folder} --csv rows.csv",
+    ):
+        console.print(line, soft_wrap=True, markup=False)

@@ -1,0 +1,53 @@
+"""Tables as files: CSV, Parquet and JSON."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from aerocues.errors import StoreError
+
+if TYPE_CHECKING:
+    import polars as pl
+
+WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
+    "csv": lambda table, file: table.write_csv(file),
+    "parquet": lambda table, file: table.write_parquet(file),
+    "json": lambda table, file: file.write(table.write_json().encode()),
+}
+
+
+def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
+    """Write a table to a file; one that is there is replaced, whole or not at all.
+
+    Parameters
+    ----------
+    table : pl.DataFrame
+    target : path
+        A file, or a device or pipe.
+    form : {"csv", "parquet", "json"}
+
+    Raises
+    ------
+    StoreError
+        If it cannot be written.
+    """
+    target = target.expanduser().resolve()
+    is_special = target.exists() and not target.is_file() and not target.is_dir()
+    beside = target if is_special else target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        if target.is_dir():
+            raise IsADirectoryError(None, "it is a folder")
+        with beside.open("wb") as file:
+            WRITERS[form](table, file)
+        if not is_special:
+            beside.replace(target)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write {target}: {error.strerror or error}; give another file"
+        ) from error
+    finally:
+        if not is_special:
+            beside.unlink(missing_ok=True)

@@ -1,0 +1,65 @@
+"""The best combinations of a table of results, until there is a score."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import polars as pl
+
+METHODS = ("detector", "descriptor", "norm", "matcher")
+
+
+def best_combinations(table: pl.DataFrame, top: int | None = None) -> pl.DataFrame:
+    """Rank combinations by their median inlier ratio over all pairs.
+
+    Parameters
+    ----------
+    table : pl.DataFrame
+        Rows of one dataset, as `Results.table` gives them.
+    top : int, optional
+        How many to keep; all by default.
+
+    Returns
+    -------
+    pl.DataFrame
+        One row a combination, the best first: ``combination, pairs, success_rate``; the medians
+        ``precision, matches, inliers``, in which a pair whose status is not ``ok`` counts as 0;
+        and the medians in seconds, over the pairs where they were measured, ``total_seconds,
+        detect_seconds, describe_seconds`` (one image: the mean of the two), ``match_seconds,
+        verify_seconds``. Ties are broken by inliers, then matches, then the name.
+    """
+    import polars as pl
+
+    succeeded = pl.col("status") == "ok"
+
+    def counted(name: str) -> pl.Expr:
+        value = pl.when(succeeded).then(pl.col(name)).otherwise(0)
+        return value.fill_null(0).median().alias(name)
+
+    def of_one_image(stage: str) -> pl.Expr:
+        both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
+        return (both / 2).median().alias(f"{stage}_seconds")
+
+    return (
+        table.group_by(pl.concat_str(METHODS, separator="-").alias("combination"))
+        .agg(
+            pl.len().alias("pairs"),
+            succeeded.mean().alias("success_rate"),
+            counted("precision"),
+            counted("matches"),
+            counted("inliers"),
+            pl.col("total_seconds").median(),
+            of_one_image("detect"),
+            of_one_image("describe"),
+            pl.col("match_seconds", "verify_seconds").median(),
+        )
+        .sort(
+            "precision",
+            "inliers",
+            "matches",
+            "combination",
+            descending=[True, True, True, False],
+        )
+        .head(top if top is not None else len(table))
+    )
