@@ -70,11 +70,14 @@ class ArrayDetector:
         return self._call(image)
 
     def read(self, raw: Any) -> Keypoints:
-        if isinstance(raw, Features):
-            return ExtractedKeypoints(**vars(raw.keypoints), descriptors=raw.descriptors)
-        if not isinstance(raw, Keypoints):
+        keypoints = raw.keypoints if isinstance(raw, Features) else raw
+        if not isinstance(keypoints, Keypoints):
             raise TypeError(f"a detector returns Keypoints, not {type(raw).__name__}")
-        return raw
+        if not np.isfinite(keypoints.xy).all():
+            raise ValueError("a detector returned positions that are not finite")
+        if isinstance(raw, Features):
+            return ExtractedKeypoints(**vars(keypoints), descriptors=raw.descriptors)
+        return keypoints
 
 
 class ArrayDescriptor:
@@ -108,15 +111,19 @@ class ArrayMatcher:
         self._norm = norm
 
     def call(self, features_1: Features, features_2: Features) -> Any:
-        return self._native.match(features_1, features_2, self._norm)
+        counts = (len(features_1), len(features_2))
+        return self._native.match(features_1, features_2, self._norm), counts
 
     def read(self, raw: Any) -> Matches:
-        if not isinstance(raw, Matches):
-            raise TypeError(f"a matcher returns Matches, not {type(raw).__name__}")
+        matches, counts = raw
+        if not isinstance(matches, Matches):
+            raise TypeError(f"a matcher returns Matches, not {type(matches).__name__}")
+        if not ((matches.indices >= 0) & (matches.indices < counts)).all():
+            raise ValueError("a matcher returned the index of a feature that does not exist")
         for column in (0, 1):
-            if len(np.unique(raw.indices[:, column])) != len(raw):
+            if len(np.unique(matches.indices[:, column])) != len(matches):
                 raise ValueError("a matcher returned a feature twice; matches are one to one")
-        return raw
+        return matches
 
 
 def _plugin(factory: str, parameters: dict[str, Any]) -> Any:

@@ -29,6 +29,8 @@ def _try_load(entry: EntryPoint) -> tuple[Any, str | None]:
         return None, str(error)
     except AttributeError as error:
         return None, f"{entry.value} does not exist: {error}"
+    except Exception as error:  # noqa: BLE001 - a third-party module may raise anything
+        return None, f"{type(error).__name__}: {error}"
 
 
 def _entries(group: str) -> Iterator[tuple[str, EntryPoint, str]]:
