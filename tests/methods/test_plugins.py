@@ -1,0 +1,238 @@
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from aerocues.errors import SelectionError
+from aerocues.methods.arrays import Features, Keypoints, Matches
+from aerocues.methods.combination import Combination
+from aerocues.methods.compatibility import why_incompatible, why_unavailable
+from aerocues.methods.making import (
+    ArrayDescriptor,
+    ArrayDetector,
+    ArrayMatcher,
+    make_descriptor,
+    make_detector,
+    make_matcher,
+)
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import preset_named
+from aerocues.methods.registry import Methods, opencv_methods
+from aerocues.methods.selection import runnable, select
+from tests.methods.arena import CODE, ENTRY_POINTS
+from tests.methods.distribution import write_distribution
+from tests.methods.pictures import shifted_pair
+
+
+@pytest.fixture
+def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Methods:
+    write_distribution(tmp_path, "feature-arena", ENTRY_POINTS, CODE, version="0.3")
+    monkeypatch.syspath_prepend(tmp_path)
+    forget(monkeypatch, "arena")
+    return installed_methods()
+
+
+def forget(monkeypatch: pytest.MonkeyPatch, package: str) -> None:
+    for name in [name for name in sys.modules if name.split(".")[0] == package]:
+        monkeypatch.delitem(sys.modules, name)
+
+
+def test_every_kind_of_plug_in_is_listed_with_where_it_comes_from(arena: Methods) -> None:
+    assert {"CORNERS", "CORNER_BITS", "NEEDY"} <= set(arena.detectors)
+    assert {"PATCHES", "CORNER_BITS", "MISTYPED"} <= set(arena.descriptors)
+    assert "MUTUAL" in arena.matchers
+    row = arena.detectors["CORNERS"]
+    assert row.origin == "feature-arena 0.3"
+    assert row.reference == "Nobody, Corners by two differences, 2024"
+    assert row.parameters == {"step": 1}
+    assert arena.descriptors["PATCHES"].dtype == "float32"
+    assert arena.descriptors["CORNER_BITS"].bit_string
+    assert arena.matchers["MUTUAL"].title == "mutual neighbours in numpy"
+
+
+def test_the_methods_of_opencv_stay_as_they_are(arena: Methods) -> None:
+    assert set(runnable(opencv_methods())) <= set(runnable(arena))
+    opencv = opencv_methods()
+    for name, row in opencv.detectors.items():
+        assert arena.detectors[name] == row
+
+
+def test_what_misses_a_dependency_is_unavailable_with_the_reason(arena: Methods) -> None:
+    reason = why_unavailable(Combination.parse("NEEDY-ORB-HAM-BF"), arena)
+    assert reason is not None
+    assert "NEEDY is unavailable: No module named 'package_that_nobody_has'" in reason
+    reason = why_unavailable(Combination.parse("ORB-MISTYPED-L2-BF"), arena)
+    assert reason is not None
+    assert "arena.methods:Patchs does not exist" in reason
+    assert not [c for c in runnable(arena) if "NEEDY" in str(c) or "MISTYPED" in str(c)]
+    with pytest.raises(SelectionError, match="NEEDY is unavailable"):
+        select(arena, "NEEDY-ORB-HAM-BF")
+
+
+def test_plug_ins_combine_with_opencv_by_type_and_norm(arena: Methods) -> None:
+    chosen = {str(c) for c in select(arena, "CORNERS-*,*-PATCHES-*,CORNER_BITS-*,*-MUTUAL")}
+    assert {
+        "CORNERS-ORB-HAM-BF",
+        "CORNERS-PATCHES-L2-MUTUAL",
+        "SIFT-PATCHES-L2-FLANN",
+        "SIFT-SIFT-L2-MUTUAL",
+        "CORNER_BITS-CORNER_BITS-HAM-FLANN",
+        "CORNER_BITS-SIFT-L2-BF",
+    } <= chosen
+    assert "CORNERS-AKAZE-HAM-BF" not in chosen
+    for text, words in (
+        ("ORB-CORNER_BITS-HAM-BF", "needs what only keypoints of CORNER_BITS carry"),
+        ("ORB-ORB-HAM-MUTUAL", "MUTUAL does not know the norm HAM"),
+        ("ORB-ORB-L2-MUTUAL", "needs float32 descriptors"),
+        ("CORNERS-PATCHES-HAM-BF", "PATCHES descriptors are float32 numbers"),
+    ):
+        assert words in (why_incompatible(Combination.parse(text), arena) or "")
+
+
+def test_plug_ins_detect_describe_and_match(arena: Methods) -> None:
+    images = shifted_pair(shift=(7, 4))
+    for text in ("CORNERS-PATCHES-L2-MUTUAL", "CORNER_BITS-CORNER_BITS-HAM-BF"):
+        names = Combination.parse(text)
+        detector = make_detector(arena, names.detector)
+        descriptor = make_descriptor(arena, names.descriptor)
+        matcher = make_matcher(arena, names.matcher, names.norm)
+        first, second = (
+            descriptor.read(
+                descriptor.call(image, descriptor.prepare(detector.read(detector.call(image))))
+            )
+            for image in images
+        )
+        matches = matcher.read(matcher.call(first, second))
+        moved = (
+            first.keypoints.xy[matches.indices[:, 0]] - second.keypoints.xy[matches.indices[:, 1]]
+        )
+        assert len(matches) > 50
+        assert (np.abs(moved - (7, 4)).max(axis=1) == 0).mean() > 0.5
+
+
+def test_parameters_decide_what_a_plug_in_finds(arena: Methods) -> None:
+    image, _ = shifted_pair()
+    detector = make_detector(arena, "CORNERS")
+    found = detector.read(detector.call(image))
+    content = arena.parameters(Combination.parse("CORNERS-ORB-HAM-BF"))
+    assert content["detector"] == ["feature-arena 0.3", "arena.methods:Corners", {"step": 1}]
+    assert len(found) == 200
+    assert arena.with_preset(preset_named("thesis")).detectors == arena.detectors
+
+
+@pytest.mark.parametrize(
+    ("entry_points", "words"),
+    [
+        ({"detectors": {"orb": "arena.methods:Corners"}}, "a detector ORB, which exists already"),
+        ({"matchers": {"BF": "arena.methods:Mutual"}}, "a matcher BF, which exists already"),
+        ({"extractors": {"sift": "arena.methods:CornerBits"}}, "SIFT, which exists already"),
+        ({"detectors": {"my-corners": "arena.methods:Corners"}}, "'my-corners'; its name may"),
+        ({"descriptors": {"a b": "arena.methods:Patches"}}, "'a b'; its name may"),
+    ],
+)
+def test_a_taken_or_malformed_name_is_an_error_that_names_the_package(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    entry_points: dict[str, dict[str, str]],
+    words: str,
+) -> None:
+    write_distribution(tmp_path, "clashing", entry_points, CODE)
+    monkeypatch.syspath_prepend(tmp_path)
+    forget(monkeypatch, "arena")
+    with pytest.raises(SelectionError) as raised:
+        installed_methods()
+    assert words in str(raised.value)
+    assert "the plug-in clashing 1.2" in str(raised.value)
+    assert "rename its entry point" in str(raised.value)
+
+
+BAD = """
+class Doubles:
+    dtype = "float64"
+
+class Speechless:
+    pass
+"""
+
+
+def test_a_plug_in_that_does_not_say_what_it_gives_is_unavailable(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    offered = {
+        "descriptors": {"DOUBLES": "unfit.methods:Doubles"},
+        "matchers": {"SPEECHLESS": "unfit.methods:Speechless"},
+        "detectors": {"BURNT": "unfit.burnt:Anything"},
+    }
+    code = {
+        "unfit/__init__.py": "",
+        "unfit/methods.py": BAD,
+        "unfit/burnt.py": "raise RuntimeError('no accelerator here')",
+    }
+    write_distribution(tmp_path, "unfit", offered, code)
+    monkeypatch.syspath_prepend(tmp_path)
+    forget(monkeypatch, "unfit")
+    methods = installed_methods()
+    assert "'float64'" in (methods.descriptors["DOUBLES"].unavailable or "")
+    assert "dtypes" in (methods.matchers["SPEECHLESS"].unavailable or "")
+    assert methods.detectors["BURNT"].unavailable == "RuntimeError: no accelerator here"
+
+
+class Returns:
+    """A third-party method that returns what it was made with."""
+
+    def __init__(self, result: object) -> None:
+        self.result = result
+
+    def detect(self, image: object) -> object:
+        return self.result
+
+    def describe(self, image: object, keypoints: object) -> object:
+        return self.result
+
+    def match(self, features_1: object, features_2: object, norm: str) -> object:
+        return self.result
+
+
+IMAGE = np.zeros((20, 20, 3), np.uint8)
+THREE = Keypoints.from_xy(np.arange(6.0).reshape(3, 2))
+NOWHERE = Keypoints.from_xy(np.full((3, 2), np.nan))
+
+
+@pytest.mark.parametrize("result", [None, [1, 2], np.zeros((3, 2)), NOWHERE])
+def test_a_detector_that_returns_nonsense_is_caught(result: object) -> None:
+    stage = ArrayDetector(Returns(result))
+    with pytest.raises((TypeError, ValueError)):
+        stage.read(stage.call(IMAGE))
+
+
+@pytest.mark.parametrize("result", [None, THREE, Features(THREE, np.zeros((3, 4), np.uint8))])
+def test_a_descriptor_that_returns_nonsense_is_caught(result: object) -> None:
+    stage = ArrayDescriptor(Returns(result), "float32")
+    with pytest.raises(TypeError):
+        stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+
+
+def test_descriptors_that_are_not_finite_are_dropped() -> None:
+    rows = np.array([[1, 2], [np.nan, 1], [3, np.inf]], np.float32)
+    stage = ArrayDescriptor(Returns(Features(THREE, rows)), "float32")
+    features = stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+    assert features.descriptors.tolist() == [[1, 2]]
+    assert features.keypoints.xy.tolist() == [[0, 1]]
+
+
+def pairs(*indices: tuple[int, int]) -> Matches:
+    return Matches(np.array(indices, np.int32), np.zeros(len(indices), np.float32))
+
+
+@pytest.mark.parametrize(
+    "result",
+    [None, [(0, 0)], pairs((0, 1), (0, 2)), pairs((0, 1), (2, 1)), pairs((0, 3)), pairs((-1, 0))],
+)
+def test_a_matcher_that_returns_nonsense_is_caught(result: object) -> None:
+    features = Features(THREE, np.zeros((3, 4), np.float32))
+    stage = ArrayMatcher(Returns(result), "L2")
+    with pytest.raises((TypeError, ValueError)):
+        stage.read(stage.call(features, features))

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import pytest
+
+from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.registry import Methods
+
+
+def test_presets_are_found_in_any_case() -> None:
+    assert preset_named("Thesis").chance_test is False
+    assert preset_named("default").chance_test is True
+
+
+def test_an_unknown_preset_names_the_known() -> None:
+    with pytest.raises(SelectionError, match="choose one of default, thesis"):
+        preset_named("best")
+
+
+def test_every_preset_fits_the_methods(methods: Methods) -> None:
+    for preset in PRESETS:
+        changed = methods.with_preset(preset)
+        assert list(changed.detectors) == list(methods.detectors)
+
+
+def test_a_preset_changes_what_it_names_and_nothing_else(methods: Methods) -> None:
+    preset = Preset("x", "x", True, {"ORB": {"nfeatures": 7}}, {"LATCH": {"bytes": 32}})
+    changed = methods.with_preset(preset)
+    assert changed.detectors["ORB"].parameters["nfeatures"] == 7
+    assert changed.detectors["ORB"].parameters["nlevels"] == 6
+    assert changed.descriptors["LATCH"].parameters["bytes"] == 32
+    assert changed.descriptors["ORB"] == methods.descriptors["ORB"]
+    before, after = (
+        m.parameters(Combination.parse("ORB-LATCH-HAM-BF")) for m in (methods, changed)
+    )
+    assert before != after
+
+
+@pytest.mark.parametrize("kind", ["detectors", "descriptors"])
+def test_a_preset_of_an_unknown_method_is_refused(methods: Methods, kind: str) -> None:
+    preset = Preset("odd", "odd", True, **{kind: {"SURF": {"size": 1}}})
+    with pytest.raises(SelectionError, match=r"preset odd sets parameters of the .* SURF"):
+        methods.with_preset(preset)
