@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 # Drawing takes milliseconds of a core that a worker could use.
 SECONDS_BETWEEN_DRAWINGS = 0.5
-BAR_WIDTH = 40
+BAR_WIDTH = 30
 
 
 @dataclass
@@ -57,16 +57,18 @@ class LiveDisplay(Tally):
         """What is shown now."""
         from rich.console import Group
         from rich.progress_bar import ProgressBar
+        from rich.table import Table
         from rich.text import Text
 
         if self.plan is None:
             return Group(Text(self._hashing, style="dim"))
         bar = ProgressBar(total=1.0, completed=self.share, width=BAR_WIDTH)
-        elapsed = f"{spoken_seconds(self.elapsed)} so far"
-        lines: list[Text] = [Text(f"{self.progress()}, {elapsed}"), *self._workers()]
+        bar_and_figures = Table.grid(padding=(0, 2))
+        bar_and_figures.add_row(bar, Text(self.progress(), no_wrap=True, overflow="ellipsis"))
+        lines = list(self._workers())
         if self.statuses:
-            lines.append(self._outcomes())
-        return Group(bar, *lines)
+            lines.append(Text(f"so far    {self.outcomes()}", style="dim"))
+        return Group(bar_and_figures, *lines)
 
     def _workers(self) -> Iterator[Text]:
         from rich.text import Text
@@ -81,11 +83,6 @@ class LiveDisplay(Tally):
                 no_wrap=True,
                 overflow="ellipsis",
             )
-
-    def _outcomes(self) -> Text:
-        from rich.text import Text
-
-        return Text(f"so far: {self.outcomes()}", style="dim")
 
 
 @contextlib.contextmanager

@@ -88,7 +88,8 @@ def _run(arguments: Sequence[str]) -> int:
 def _told(error: Any) -> str:
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "aerocues"
-    return f"{error.format_message().rstrip('.')}; see '{command} --help'"
+    message = error.format_message().replace("Value error, ", "").rstrip(".")
+    return f"{message}; see '{command} --help'"
 
 
 def _complain(message: str) -> int:

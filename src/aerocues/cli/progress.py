@@ -79,9 +79,10 @@ class Tally(Observer):
         return max(to_go - (self.clock() - self._latest), 0.0)
 
     def progress(self) -> str:
-        """``1,200 of 13,600 rows (9 %), about 12 min 05 s left``."""
+        """``1,200 of 13,600 rows (9 %), 1 min 10 s so far, about 12 min 05 s left``."""
         left = self.seconds_left()
-        ending = "" if left is None else f", about {spoken_seconds(left)} left"
+        ending = f", {spoken_seconds(self.elapsed)} so far"
+        ending += "" if left is None or left < 1 else f", about {spoken_seconds(left)} left"
         share = f"{int(100 * self.share)} %"
         return f"{self.rows_stored:,} of {self.rows_planned:,} rows ({share}){ending}"
 

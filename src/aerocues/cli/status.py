@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from aerocues.evaluation.results import RunStatus
 
 LONGEST_MESSAGE = 160
+LONGEST_LIST = 40
+# OpenCV puts its version and a path of the machine that built it before what it has to say.
+OPENCV_PREFIX = re.compile(r"OpenCV\([^)]*\) \S+: error: ")
 
 
 def status(
@@ -52,15 +58,13 @@ def _print_status(found: RunStatus, folder: Path) -> None:
     by_status = plain_table("", "rows", numbers=1)
     for name, number in found.statuses.items():
         by_status.add_row(f"  {name}", f"{number:,}")
-    print_table(console, by_status)
+    if found.statuses:
+        print_table(console, by_status)
     if len(found.failures):
-        console.print(Text("\nnot ok, by reason and method", style="bold"))
-        failures = plain_table("status", "methods", "rows", "example")
-        for row in found.failures.iter_rows(named=True):
-            message = " ".join((row["message"] or "").split())[:LONGEST_MESSAGE]
-            methods = f"{row['detector']}-{row['descriptor']}"
-            failures.add_row(row["status"], methods, f"{row['rows']:,}", Text(message))
-        print_table(console, failures)
+        console.print(Text("\nnot ok, by reason and methods", style="bold"))
+        print_table(console, _failures(found))
+        if len(found.failures) > LONGEST_LIST:
+            console.print(f"and {len(found.failures) - LONGEST_LIST} more; --json prints all")
     if found.exclusions:
         console.print(Text("\nleft out because of the images", style="bold"))
         for exclusion in found.exclusions:
@@ -68,3 +72,17 @@ def _print_status(found: RunStatus, folder: Path) -> None:
             console.print(Text(f"  {on}: {exclusion['reason']}"))
     if found.left:
         console.print(Text(f"\nrun the same command again (-o {folder}) to measure what is left"))
+
+
+def _failures(found: RunStatus) -> Table:
+    from rich.text import Text
+
+    from aerocues.cli.console import plain_table
+
+    table = plain_table("status", "rows", "methods", "example")
+    table.columns[1].justify = "right"
+    for row in found.failures.head(LONGEST_LIST).iter_rows(named=True):
+        message = OPENCV_PREFIX.sub("OpenCV: ", " ".join((row["message"] or "").split()))
+        methods = f"{row['detector']}-{row['descriptor']}"
+        table.add_row(row["status"], f"{row['rows']:,}", methods, Text(message[:LONGEST_MESSAGE]))
+    return table
