@@ -1,0 +1,195 @@
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from aerocues.evaluation.protocol import ChanceTest, Verification
+from aerocues.evaluation.verification import (
+    Model,
+    chance_inliers,
+    estimate_homography,
+    find_fundamental,
+    magsac_parameters,
+    read_model,
+)
+
+Points = NDArray[np.float32]
+SETTINGS = Verification()
+WIDTH, HEIGHT = 1000, 665
+
+
+def cross(vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    x, y, z = vector
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def two_views(
+    inliers: int, outliers: int, noise: float = 0.3, seed: int = 0
+) -> tuple[Points, Points, NDArray[np.float64]]:
+    """Projections of points in space by two cameras, wrong matches after them, and the true F."""
+    random = np.random.default_rng(seed)
+    calibration = np.array([[800.0, 0, WIDTH / 2], [0, 800.0, HEIGHT / 2], [0, 0, 1]])
+    rotation, _ = cv2.Rodrigues(np.array([0.03, -0.10, 0.05]))
+    translation = np.array([1.0, 0.2, 0.1])
+    first = random.uniform((0, 0), (WIDTH, HEIGHT), (inliers, 2))
+    depth = random.uniform(4, 12, inliers)
+    rays = np.column_stack([first, np.ones(inliers)]) @ np.linalg.inv(calibration).T
+    moved = (rays * depth[:, None]) @ rotation.T + translation
+    projected = moved @ calibration.T
+    second = projected[:, :2] / projected[:, 2:]
+    first, second = (points + random.normal(0, noise, points.shape) for points in (first, second))
+    wrong = random.uniform((0, 0), (WIDTH, HEIGHT), (2, outliers, 2))
+    inverse = np.linalg.inv(calibration)
+    fundamental = inverse.T @ cross(translation) @ rotation @ inverse
+    return (
+        np.concatenate([first, wrong[0]]).astype(np.float32),
+        np.concatenate([second, wrong[1]]).astype(np.float32),
+        fundamental,
+    )
+
+
+def sampson(
+    points_1: Points, points_2: Points, fundamental: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    first, second = (np.column_stack([p, np.ones(len(p))]) for p in (points_1, points_2))
+    lines_2, lines_1 = first @ fundamental.T, second @ fundamental
+    product = (second * lines_2).sum(axis=1)
+    gradient = (lines_2[:, :2] ** 2).sum(axis=1) + (lines_1[:, :2] ** 2).sum(axis=1)
+    distances: NDArray[np.float64] = np.abs(product) / np.sqrt(gradient)
+    return distances
+
+
+def fundamental_of(points_1: Points, points_2: Points) -> Model:
+    raw = find_fundamental(points_1, points_2, magsac_parameters(SETTINGS))
+    return read_model(raw, len(points_1))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_inliers_of_a_known_geometry_are_found(seed: int) -> None:
+    first, second, truth = two_views(200, 130, seed=seed)
+    model = fundamental_of(first, second)
+    assert model.matrix is not None
+    assert model.inliers[:200].mean() > 0.97
+    # A wrong match that lies on its epipolar line by chance cannot be told from a true one.
+    by_chance = sampson(first[200:], second[200:], truth) < SETTINGS.threshold + 2
+    assert model.inliers[200:][~by_chance].mean() < 0.03
+    assert model.matrix.dtype == np.float64
+    assert model.inliers.dtype == bool
+    assert model.count == model.inliers.sum()
+    points = sampson(first[:200], second[:200], model.matrix)
+    assert np.median(points) < 0.6
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_parameters_equal_the_default_of_opencv_byte_for_byte(seed: int) -> None:
+    first, second, _ = two_views(60 + 40 * seed, 50, noise=0.8, seed=seed)
+    default, default_mask = cv2.findFundamentalMat(first, second, cv2.USAC_MAGSAC)
+    matrix, mask = find_fundamental(first, second, magsac_parameters(SETTINGS))
+    assert matrix.tobytes() == default.tobytes()
+    assert mask.tobytes() == default_mask.tobytes()
+
+
+def test_verification_repeats_exactly_whatever_the_seed_of_opencv() -> None:
+    first, second, _ = two_views(80, 100)
+    found = []
+    for seed in (0, 1, 99):
+        cv2.setRNGSeed(seed)
+        matrix, mask = find_fundamental(first, second, magsac_parameters(SETTINGS))
+        found.append((matrix.tobytes(), mask.tobytes()))
+    assert len(set(found)) == 1
+
+
+def test_settings_reach_opencv() -> None:
+    parameters = magsac_parameters(Verification(1.5, 0.999, 5000))
+    assert parameters.threshold == 1.5
+    assert parameters.confidence == 0.999
+    assert parameters.maxIterations == 5000
+    first, second, _ = two_views(200, 0, noise=1.0)
+    counts = [
+        read_model(find_fundamental(first, second, magsac_parameters(Verification(t))), 200).count
+        for t in (0.5, 1.5, 3.0)
+    ]
+    assert counts[0] < counts[1] < counts[2]
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (123.0, 45.0)])
+def test_identical_points_give_no_model(place: tuple[float, float]) -> None:
+    same = np.tile(np.array(place, np.float32), (30, 1))
+    model = fundamental_of(same, same)
+    assert model.matrix is None
+    assert model.count == 0
+    assert len(model.inliers) == 30
+
+
+def test_points_on_one_line_give_no_model_or_a_finite_one() -> None:
+    line = np.column_stack([np.arange(40), 2 * np.arange(40)]).astype(np.float32)
+    model = fundamental_of(line, line + 5)
+    assert model.matrix is None or np.isfinite(model.matrix).all()
+
+
+NOT_A_MODEL = [
+    (None, None),
+    (np.eye(3), None),
+    (np.full((3, 3), np.nan), np.ones((8, 1), np.uint8)),
+    (np.zeros((3, 3)), np.ones((8, 1), np.uint8)),
+    (np.outer([1.0, 2, 3], [4.0, 5, 6]), np.ones((8, 1), np.uint8)),
+    (np.eye(3), np.zeros((8, 1), np.uint8)),
+    (np.vstack([np.eye(3), np.eye(3)]), np.ones((8, 1), np.uint8)),
+]
+
+
+@pytest.mark.parametrize("raw", NOT_A_MODEL)
+def test_what_is_no_single_matrix_of_rank_two_is_no_model(raw: tuple[object, object]) -> None:
+    model = read_model(raw, 8)
+    assert model.matrix is None
+    assert model.inliers.tolist() == [False] * 8
+
+
+def test_an_exact_homography_is_found() -> None:
+    truth = np.array([[1.1, 0.05, 12.0], [-0.04, 0.95, -7.0], [2e-5, 1e-5, 1.0]])
+    random = np.random.default_rng(2)
+    first = random.uniform((0, 0), (WIDTH, HEIGHT), (60, 2)).astype(np.float32)
+    moved = np.column_stack([first, np.ones(60)]) @ truth.T
+    second = (moved[:, :2] / moved[:, 2:]).astype(np.float32)
+    second[50:] = random.uniform((0, 0), (WIDTH, HEIGHT), (10, 2))
+    model = estimate_homography(first, second, SETTINGS)
+    assert model.matrix is not None
+    np.testing.assert_allclose(model.matrix / model.matrix[2, 2], truth, rtol=1e-3, atol=1e-6)
+    assert model.inliers[:50].all()
+    assert model.count <= 52
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_a_homography_needs_four_points(count: int) -> None:
+    points = np.random.default_rng(0).uniform(0, 100, (count, 2)).astype(np.float32)
+    model = estimate_homography(points, points, SETTINGS)
+    assert model.matrix is None
+    assert model.inliers.shape == (count,)
+
+
+def passes(points_1: Points, points_2: Points, test: ChanceTest) -> bool:
+    _, largest = chance_inliers(points_1, points_2, SETTINGS, test, seed=0)
+    return fundamental_of(points_1, points_2).count > test.factor * largest
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_true_matches_beat_chance_and_random_ones_do_not(seed: int) -> None:
+    first, second, _ = two_views(60, 100, seed=seed)
+    assert passes(first, second, ChanceTest())
+    wrong_1, wrong_2, _ = two_views(0, 200, seed=seed)
+    assert not passes(wrong_1, wrong_2, ChanceTest())
+
+
+def test_the_chance_test_is_seeded_and_counts_as_it_says() -> None:
+    first, second, _ = two_views(30, 100)
+    mean, largest = chance_inliers(first, second, SETTINGS, ChanceTest(), seed=5)
+    assert (mean, largest) == chance_inliers(first, second, SETTINGS, ChanceTest(), seed=5)
+    assert 0 < mean <= largest < 40
+    one = chance_inliers(first, second, SETTINGS, ChanceTest(shuffles=1), seed=5)
+    assert one[0] == one[1] <= largest
+    # The mean over more shuffles is another one: the shuffles differ.
+    assert (
+        len({chance_inliers(first, second, SETTINGS, ChanceTest(n), 5)[0] for n in (1, 2, 3)}) > 1
+    )
