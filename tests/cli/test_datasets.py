@@ -3,46 +3,44 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from typer.testing import CliRunner
+import pytest
 
-from aerocues.cli.datasets import app
-
-runner = CliRunner()
+from aerocues.cli.program import exit_code
 
 
-def test_the_list_names_every_kind_and_where_it_is() -> None:
-    result = runner.invoke(app, [])
-    assert result.exit_code == 0
+def test_the_list_names_every_kind_and_where_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code(["datasets"]) == 0
+    output = capsys.readouterr().out
     for word in ("synthetic[:IMAGE]", "oxford:DIR", "hpatches:DIR", "uav:DIR", "flight:DIR"):
-        assert word in result.output
-    assert "aerocues datasets fetch oxford --to DIR" in result.output
+        assert word in output
+    assert "aerocues datasets fetch oxford --to DIR" in output
 
 
-def test_json() -> None:
-    result = runner.invoke(app, ["--json"])
-    rows = {row["name"]: row for row in json.loads(result.output)}
+def test_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code(["datasets", "--json"]) == 0
+    rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
     assert rows["oxford"]["ground_truth"] == "homographies"
     assert rows["flight"]["takes_pairs"] is True
     assert "layout" in rows["hpatches"]
 
 
-def test_errors_are_one_line_and_exit_with_2(tmp_path: Path) -> None:
-    for arguments in (
-        ["fetch", "aerial", "--to", str(tmp_path)],
-        ["fetch", "oxford", "--to", str(tmp_path), "--base-url", "nowhere"],
-    ):
-        result = runner.invoke(app, arguments)
-        assert result.exit_code == 2
-        assert result.stderr.startswith("error: ")
-        assert result.stderr.count("\n") == 1
+@pytest.mark.parametrize(
+    "arguments", [["aerial"], ["oxford", "--base-url", "nowhere"], ["oxford", "--base-url", ""]]
+)
+def test_errors_are_one_line_and_exit_with_2(
+    arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(["datasets", "fetch", *arguments, "--to", str(tmp_path)]) == 2
+    message = capsys.readouterr().err.strip()
+    assert message.startswith("error: ")
+    assert "\n" not in message
 
 
-def test_fetch_tells_how_to_go_on(tmp_path: Path) -> None:
+def test_fetch_tells_how_to_go_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sequences = ("bark", "bikes", "boat", "graf", "leuven", "trees", "ubc", "wall")
     for name in sequences:
         (tmp_path / name).mkdir()
     record = {"sha256": {}, "sequences": {name: [name] for name in sequences}}
     (tmp_path / "checksums.json").write_text(json.dumps(record))
-    result = runner.invoke(app, ["fetch", "oxford", "--to", str(tmp_path)])
-    assert result.exit_code == 0
-    assert f"aerocues run oxford:{tmp_path}" in result.output.replace("\n", "")
+    assert exit_code(["datasets", "fetch", "oxford", "--to", str(tmp_path)]) == 0
+    assert f"aerocues run oxford:{tmp_path}" in capsys.readouterr().out

@@ -129,7 +129,7 @@ def test_exif_orientation_is_honoured(
     }[orientation]
     exif = PillowImage.Exif()
     exif[274] = orientation
-    options = {"jpg": {"quality": 95}, "webp": {"lossless": True}}
+    options: dict[str, dict[str, Any]] = {"jpg": {"quality": 95}, "webp": {"lossless": True}}
     path = save(tmp_path / f"turned.{suffix}", turned_back, exif=exif, **options.get(suffix, {}))
     source = FileSource(path)
     bgr = source.read().bgr

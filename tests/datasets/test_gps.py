@@ -37,7 +37,7 @@ def test_positions_that_make_no_sense_are_none(change: dict[int, object]) -> Non
 
 def test_exif_round_trip(tmp_path: Path) -> None:
     exif = PillowImage.Exif()
-    exif.get_ifd(0x8825).update({**NORTH_EAST, 5: b"\x00", 6: 120.25})
+    exif[0x8825] = {**NORTH_EAST, 5: b"\x00", 6: 120.25}
     PillowImage.new("RGB", (32, 32)).save(tmp_path / "a.jpg", exif=exif)
     position = read_gps(tmp_path / "a.jpg")
     assert position is not None

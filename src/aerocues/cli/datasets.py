@@ -38,6 +38,7 @@ def fetch(
     ] = None,
 ) -> None:
     """Download a benchmark from its authors; goes on where an earlier attempt broke off."""
+    from rich.console import Console
     from rich.progress import (
         BarColumn,
         DownloadColumn,
@@ -48,7 +49,6 @@ def fetch(
     )
 
     from aerocues.datasets.fetch import fetch as fetch_benchmark
-    from aerocues.errors import AerocuesError
 
     columns = (
         TextColumn("{task.description}"),
@@ -57,12 +57,8 @@ def fetch(
         TransferSpeedColumn(),
         TimeRemainingColumn(),
     )
-    try:
-        with Progress(*columns) as bars:
-            folders = fetch_benchmark(name, to, base_url=base_url, progress=_shown_on(bars))
-    except AerocuesError as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(2) from error
+    with Progress(*columns, console=Console(stderr=True)) as bars:
+        folders = fetch_benchmark(name, to, base_url=base_url, progress=_shown_on(bars))
     typer.echo(f"{len(folders)} sequences in {to}; measure them with: aerocues run {name}:{to}")
 
 
@@ -79,13 +75,12 @@ def _shown_on(bars: Bars) -> Progress:
 
 
 def _print_table() -> None:
-    from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
+    from aerocues.cli.console import plain_table, standard_output
     from aerocues.datasets.catalog import CATALOG
 
-    table = Table(box=None, show_header=False, pad_edge=False)
+    table = plain_table("", "")
     for kind in CATALOG:
         table.add_row(Text(kind.form, style="bold"), Text())
         for label, value in (
@@ -95,7 +90,7 @@ def _print_table() -> None:
             ("where", kind.where),
         ):
             table.add_row(Text(f"  {label}"), Text(value))
-    Console().print(table)
+    standard_output().print(table)
     typer.echo("Layouts and terms: aerocues datasets --json")
 
 

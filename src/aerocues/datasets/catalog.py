@@ -208,8 +208,7 @@ def open_dataset(
     Returns
     -------
     Dataset
-        Without the images that no pair uses. Pairs keep the index that they have in the whole
-        dataset, so that a part of it gives the same rows as the whole.
+        Without the images that no pair uses; the pairs that are left are numbered from 0.
 
     Raises
     ------
@@ -251,7 +250,7 @@ def _restricted(dataset: Dataset, limit: int | None, sequences: Sequence[str] | 
         if not kept:
             have = ", ".join(dict.fromkeys(pair.sequence for pair in dataset.pairs))
             raise DatasetError(f"no sequence is called {', '.join(sequences)}; there are: {have}")
-    kept = kept[:limit]
+    kept = [replace(pair, index=index) for index, pair in enumerate(kept[:limit])]
     used = {name for pair in kept for name in (pair.image_1, pair.image_2)}
     images = [image for image in dataset.images if image.name in used]
     return replace(dataset, images=images, pairs=kept)

@@ -79,7 +79,7 @@ class Pair:
     Parameters
     ----------
     index : int
-        0-based position among the pairs of the whole dataset; a selection of sequences keeps it.
+        0-based position among the pairs of the dataset.
     image_1, image_2 : str
         Names of the images.
     sequence : str

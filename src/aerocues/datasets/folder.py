@@ -17,8 +17,8 @@ from aerocues.errors import DatasetError
 
 def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
     """Sort key under which ``img2`` stands before ``img10``, whatever the case of letters."""
-    parts = re.split(r"(\d+)", name.casefold())
-    keyed = [(1, int(part), part) if part.isdigit() else (0, 0, part) for part in parts if part]
+    parts = re.split(r"([0-9]+)", name.casefold())
+    keyed = ((i % 2, int(part) if i % 2 else 0, part) for i, part in enumerate(parts))
     return (*keyed, (0, 0, name))
 
 
