@@ -77,7 +77,7 @@ def _shown_on(bars: Bars) -> Progress:
 def _print_table() -> None:
     from rich.text import Text
 
-    from aerocues.cli.console import plain_table, standard_output
+    from aerocues.cli.console import plain_table, print_table, standard_output
     from aerocues.datasets.catalog import CATALOG
 
     table = plain_table("", "")
@@ -90,7 +90,7 @@ def _print_table() -> None:
             ("where", kind.where),
         ):
             table.add_row(Text(f"  {label}"), Text(value))
-    standard_output().print(table)
+    print_table(standard_output(), table)
     typer.echo("Layouts and terms: aerocues datasets --json")
 
 
