@@ -250,7 +250,7 @@ def _restricted(dataset: Dataset, limit: int | None, sequences: Sequence[str] | 
         if not kept:
             have = ", ".join(dict.fromkeys(pair.sequence for pair in dataset.pairs))
             raise DatasetError(f"no sequence is called {', '.join(sequences)}; there are: {have}")
-    kept = [replace(pair, index=index) for index, pair in enumerate(kept[:limit])]
+    kept = kept[:limit]
     used = {name for pair in kept for name in (pair.image_1, pair.image_2)}
     images = [image for image in dataset.images if image.name in used]
     return replace(dataset, images=images, pairs=kept)

@@ -79,7 +79,7 @@ class Pair:
     Parameters
     ----------
     index : int
-        0-based position among the pairs of the dataset.
+        0-based position among the pairs of the whole dataset; a part of it keeps the numbers.
     image_1, image_2 : str
         Names of the images.
     sequence : str
@@ -113,6 +113,14 @@ class Dataset:
     def image(self, name: str) -> Image:
         """The image called `name`; KeyError where there is none."""
         return self._by_name[name]
+
+    def pair(self, index: int) -> Pair:
+        """The pair whose ``index`` is `index`; KeyError where there is none."""
+        return self._by_index[index]
+
+    @cached_property
+    def _by_index(self) -> dict[int, Pair]:
+        return {pair.index: pair for pair in self.pairs}
 
     @cached_property
     def _by_name(self) -> dict[str, Image]:

@@ -20,6 +20,12 @@ class StageTime:
     cpu: float
     peak_memory: float | None = None
 
+    def __add__(self, later: StageTime) -> StageTime:
+        peaks = [peak for peak in (self.peak_memory, later.peak_memory) if peak is not None]
+        return StageTime(
+            self.wall + later.wall, self.cpu + later.cpu, max(peaks) if peaks else None
+        )
+
 
 class Clock:
     """Times calls in the calling thread.

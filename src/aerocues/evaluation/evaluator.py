@@ -57,7 +57,7 @@ class Evaluator:
 
         An image's features are kept until the last pair of the unit that needs them.
         """
-        pairs = [self._context.dataset.pairs[work.pair] for work in unit.work]
+        pairs = [self._context.dataset.pair(work.pair) for work in unit.work]
         last = {name: i for i, pair in enumerate(pairs) for name in (pair.image_1, pair.image_2)}
         cache: ImageCache = {}
         for position, (pair, work) in enumerate(zip(pairs, unit.work, strict=True)):

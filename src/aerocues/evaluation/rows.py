@@ -38,7 +38,7 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
 def failed_rows(context: Context, unit: Unit, status: str, message: str) -> list[Row]:
     """Rows for work that could not be done."""
     return [
-        begin_row(context, context.dataset.pairs[work.pair], combination, key)
+        begin_row(context, context.dataset.pair(work.pair), combination, key)
         | {"status": status, "message": message}
         for work in unit.work
         for combination, key in zip(work.combinations, work.row_keys, strict=True)

@@ -60,6 +60,11 @@ COUNTS: tuple[Column, ...] = (
     _count("inliers", "matches that agree with the fundamental matrix"),
     Column("chance_inliers", "float", "count", "mean inliers over the shuffled matches"),
     _count("chance_inliers_max", "largest number of inliers over the shuffled matches"),
+    _text(
+        "sampling",
+        "how samples were drawn: uniform, or guided by distance where uniform ones found no model "
+        "better than chance",
+    ),
     _count("homography_inliers", "matches that agree with the homography (homography data)"),
 )
 

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation import ground_truth
@@ -14,13 +16,7 @@ from aerocues.evaluation.features import Described, ImageFeatures, run_stage
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.schema import PIXEL_THRESHOLDS
 from aerocues.evaluation.unit import Context, StageCall
-from aerocues.evaluation.verification import (
-    chance_inliers,
-    estimate_homography,
-    find_fundamental,
-    magsac_parameters,
-    read_model,
-)
+from aerocues.evaluation.verification import IndexArray, Model, Verifier, estimate_homography
 from aerocues.methods.arrays import Float32Array, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
@@ -37,6 +33,15 @@ class TwoViews:
     described: tuple[Described, Described]
 
 
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """Points of matches, (M, 2) float32 pixels each, and their order by descriptor distance."""
+
+    points_1: Float32Array
+    points_2: Float32Array
+    order: IndexArray
+
+
 class TwoViewMeasurement:
     """Fills the rows of pairs; matchers are made once and kept."""
 
@@ -45,7 +50,7 @@ class TwoViewMeasurement:
         self._clock = clock
         self._announce = announce
         self._matchers: dict[tuple[str, str], MatcherStage] = {}
-        self._magsac = magsac_parameters(context.protocol.verification)
+        self._verifier = Verifier(context.protocol, clock)
         self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
 
     def begin_pair(self) -> None:
@@ -63,11 +68,14 @@ class TwoViewMeasurement:
             return "no_descriptors"
         matches = self._match(row, views, combination)
         row["matches"] = len(matches)
-        points_1 = first.keypoints.xy[matches.indices[:, 0]]
-        points_2 = second.keypoints.xy[matches.indices[:, 1]]
-        status = self._verify(row, views.pair, combination, points_1, points_2)
+        found = Matched(
+            first.keypoints.xy[matches.indices[:, 0]],
+            second.keypoints.xy[matches.indices[:, 1]],
+            np.argsort(matches.distance, kind="stable"),
+        )
+        status = self._verify(row, views, combination, found)
         if views.pair.homography is not None:
-            self._compare_with_truth(row, views, points_1, points_2)
+            self._compare_with_truth(row, views, views.pair.homography, found)
         return status
 
     def _match(self, row: Row, views: TwoViews, combination: Combination) -> Matches:
@@ -85,53 +93,27 @@ class TwoViewMeasurement:
         record_time(row, "match_seconds", time)
         return run_stage(what, lambda: matcher.read(raw))
 
-    def _verify(
-        self,
-        row: Row,
-        pair: Pair,
-        combination: Combination,
-        points_1: Float32Array,
-        points_2: Float32Array,
-    ) -> str:
-        protocol = self._context.protocol
-        count = len(points_1)
-        if count < protocol.verification.minimum_matches:
+    def _verify(self, row: Row, views: TwoViews, combination: Combination, found: Matched) -> str:
+        if len(found.points_1) < self._context.protocol.verification.minimum_matches:
             return "too_few_matches"
-        self._announce(_call("verify", pair, combination))
-        what = f"verifying {combination} on {pair.image_1} and {pair.image_2}"
-        cv2.setRNGSeed(protocol.seed)
-        raw, time = run_stage(
-            what,
-            lambda: self._clock.time(lambda: find_fundamental(points_1, points_2, self._magsac)),
+        self._announce(_call("verify", views.pair, combination))
+        what = f"verifying {combination} on {views.pair.image_1} and {views.pair.image_2}"
+        verdict = run_stage(
+            what, lambda: self._verifier.verify(found.points_1, found.points_2, found.order)
         )
-        record_time(row, "verify_seconds", time)
-        model = read_model(raw, count)
-        row["inliers"] = model.count
-        if protocol.chance is not None:
-            chance = protocol.chance
-            row["chance_inliers"], row["chance_inliers_max"] = run_stage(
-                what,
-                lambda: chance_inliers(
-                    points_1, points_2, protocol.verification, chance, protocol.seed
-                ),
-            )
-            if (
-                model.matrix is not None
-                and model.count <= chance.factor * row["chance_inliers_max"]
-            ):
-                return "chance"
-        return "no_model" if model.matrix is None else "ok"
+        record_time(row, "verify_seconds", verdict.time)
+        row["inliers"] = verdict.model.count
+        row["sampling"] = verdict.sampling
+        row["chance_inliers"] = verdict.chance_mean
+        row["chance_inliers_max"] = verdict.chance_max
+        if verdict.model.matrix is None:
+            return "no_model"
+        return "ok" if verdict.passed else "chance"
 
     def _compare_with_truth(
-        self,
-        row: Row,
-        views: TwoViews,
-        points_1: Float32Array,
-        points_2: Float32Array,
+        self, row: Row, views: TwoViews, truth: NDArray[np.float64], found: Matched
     ) -> None:
-        truth = views.pair.homography
-        assert truth is not None
-        errors = ground_truth.transfer_errors(points_1, points_2, truth)
+        errors = ground_truth.transfer_errors(found.points_1, found.points_2, truth)
         for threshold in PIXEL_THRESHOLDS:
             correct = int((errors <= threshold).sum())
             if len(errors):
@@ -146,14 +128,20 @@ class TwoViewMeasurement:
             )
         row["gt_repeatability"] = self._repeatabilities[same]
         model = run_stage(
-            "estimating a homography",
-            lambda: estimate_homography(points_1, points_2, self._context.protocol.verification),
+            "estimating a homography", lambda: self._homography(row["sampling"], found)
         )
         row["homography_inliers"] = model.count
         error = ground_truth.corner_error(model.matrix, truth, pixels_1)
         row["homography_error"] = error
         for threshold in PIXEL_THRESHOLDS:
             row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)
+
+    def _homography(self, sampling: str | None, found: Matched) -> Model:
+        """A homography from samples drawn as for the fundamental matrix."""
+        if sampling != "guided":
+            return estimate_homography(found.points_1, found.points_2, self._verifier.uniform)
+        first, second = (points[found.order] for points in (found.points_1, found.points_2))
+        return estimate_homography(first, second, self._verifier.guided)
 
 
 def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:

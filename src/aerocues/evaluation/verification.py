@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.evaluation.protocol import ChanceTest, Verification
+from aerocues.evaluation.clock import Clock, StageTime
+from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
+from aerocues.methods.arrays import Float32Array
 
 MINIMUM_FOR_HOMOGRAPHY = 4
+IndexArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,14 +29,17 @@ class Model:
         return int(self.inliers.sum())
 
 
-def magsac_parameters(settings: Verification) -> Any:
-    """OpenCV's USAC parameters that equal ``USAC_MAGSAC`` at the default settings."""
+def magsac_parameters(settings: Verification, *, guided: bool = False) -> Any:
+    """OpenCV's USAC parameters that equal ``USAC_MAGSAC`` at the default settings.
+
+    With `guided`, samples are drawn from the first matches first (PROSAC).
+    """
     parameters = cv2.UsacParams()
     parameters.threshold = settings.threshold
     parameters.confidence = settings.confidence
     parameters.maxIterations = settings.max_iterations
     parameters.score = cv2.SCORE_METHOD_MAGSAC
-    parameters.sampler = cv2.SAMPLING_UNIFORM
+    parameters.sampler = cv2.SAMPLING_PROSAC if guided else cv2.SAMPLING_UNIFORM
     parameters.loMethod = cv2.LOCAL_OPTIM_INNER_LO
     parameters.loIterations = 10
     parameters.loSampleSize = 50
@@ -54,45 +60,111 @@ def _checked(matrix: Any, mask: Any, count: int) -> Model:
     return Model(np.asarray(matrix, np.float64), inliers) if inliers.any() else nothing
 
 
-def find_fundamental(points_1: Any, points_2: Any, parameters: Any) -> tuple[Any, Any]:
-    """The bare call, for the clock."""
-    return cv2.findFundamentalMat(points_1, points_2, parameters)  # type: ignore[no-any-return]
-
-
-def read_model(raw: tuple[Any, Any], count: int) -> Model:
-    """The checked model that a bare call over `count` matches returned."""
-    return _checked(*raw, count)
-
-
-def estimate_homography(
-    points_1: NDArray[np.float32], points_2: NDArray[np.float32], settings: Verification
-) -> Model:
+def estimate_homography(points_1: Float32Array, points_2: Float32Array, parameters: Any) -> Model:
     """A homography from (M, 2) matched points; no matrix where there is none."""
     count = len(points_1)
     if count < MINIMUM_FOR_HOMOGRAPHY:
         return Model(None, np.zeros(count, bool))
-    matrix, mask = cv2.findHomography(points_1, points_2, magsac_parameters(settings))
+    matrix, mask = cv2.findHomography(points_1, points_2, parameters)
     return _checked(matrix, mask, count)
 
 
-def chance_inliers(
-    points_1: NDArray[np.float32],
-    points_2: NDArray[np.float32],
-    settings: Verification,
-    test: ChanceTest,
-    seed: int,
-) -> tuple[float, int]:
-    """Mean and largest number of inliers that shuffled matches give.
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """The outcome of verifying one set of matches.
 
     Parameters
     ----------
-    points_1, points_2 : (M, 2) float32
-        Matched points in pixels, M at least ``settings.minimum_matches``.
+    model : Model
+        The fundamental matrix; its inliers are in the order of the matches that were given.
+    sampling : {"uniform", "guided"}
+        How the samples were drawn that gave the model.
+    chance_mean, chance_max : float, int or None
+        Inliers that shuffled matches give; None where that was not asked.
+    passed : bool
+        Whether there is a model and, where asked, it beats chance.
+    time : StageTime
+        Of the estimation alone, without the shuffled ones.
     """
-    parameters = magsac_parameters(settings)
-    counts = []
-    for shuffle in range(test.shuffles):
-        order = np.random.default_rng((seed, shuffle)).permutation(len(points_2))
-        raw = find_fundamental(points_1, np.ascontiguousarray(points_2[order]), parameters)
-        counts.append(read_model(raw, len(points_1)).count)
-    return float(np.mean(counts)), max(counts)
+
+    model: Model
+    sampling: str
+    chance_mean: float | None
+    chance_max: int | None
+    passed: bool
+    time: StageTime
+
+
+class Verifier:
+    """Estimates fundamental matrices under a protocol."""
+
+    def __init__(self, protocol: MeasurementProtocol, clock: Clock) -> None:
+        self._protocol = protocol
+        self._clock = clock
+        self.uniform = magsac_parameters(protocol.verification)
+        self.guided = magsac_parameters(protocol.verification, guided=True)
+
+    def verify(self, points_1: Float32Array, points_2: Float32Array, order: IndexArray) -> Verdict:
+        """Estimate and judge a fundamental matrix.
+
+        Parameters
+        ----------
+        points_1, points_2 : (M, 2) float32
+            Matched points in pixels, M at least the protocol's ``minimum_matches``.
+        order : (M,) int
+            The matches by descriptor distance, the smallest first.
+
+        Raises
+        ------
+        cv2.error
+            If OpenCV refuses the points.
+        """
+        chance = self._protocol.chance
+        factor = None if chance is None else chance.factor
+        first = self._look(points_1, points_2, self.uniform, factor, "uniform")
+        if first.passed or chance is None:
+            return first
+        second = self._look(
+            np.ascontiguousarray(points_1[order]),
+            np.ascontiguousarray(points_2[order]),
+            self.guided,
+            chance.guided_factor,
+            "guided",
+        )
+        time = first.time + second.time
+        if not second.passed:
+            return replace(first, time=time)
+        inliers = np.zeros(len(order), bool)
+        inliers[order] = second.model.inliers
+        return replace(second, model=Model(second.model.matrix, inliers), time=time)
+
+    def _look(
+        self,
+        points_1: Float32Array,
+        points_2: Float32Array,
+        parameters: Any,
+        factor: float | None,
+        sampling: str,
+    ) -> Verdict:
+        count = len(points_1)
+        cv2.setRNGSeed(self._protocol.seed)
+        raw, time = self._clock.time(lambda: cv2.findFundamentalMat(points_1, points_2, parameters))
+        matrix, mask = raw
+        model = _checked(matrix, mask, count)
+        if factor is None:
+            return Verdict(model, sampling, None, None, model.matrix is not None, time)
+        shuffled = self._shuffled_counts(points_1, points_2, parameters)
+        passed = model.matrix is not None and model.count > factor * max(shuffled)
+        return Verdict(model, sampling, float(np.mean(shuffled)), max(shuffled), passed, time)
+
+    def _shuffled_counts(
+        self, points_1: Float32Array, points_2: Float32Array, parameters: Any
+    ) -> list[int]:
+        chance = self._protocol.chance or ChanceTest()
+        counts = []
+        for shuffle in range(chance.shuffles):
+            generator = np.random.default_rng((self._protocol.seed, shuffle))
+            shuffled = np.ascontiguousarray(points_2[generator.permutation(len(points_2))])
+            matrix, mask = cv2.findFundamentalMat(points_1, shuffled, parameters)
+            counts.append(_checked(matrix, mask, len(points_1)).count)
+        return counts

@@ -9,11 +9,15 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
+import time
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from aerocues.evaluation.evaluator import Evaluator
 from aerocues.evaluation.heartbeat import Heartbeat
+
+PARENT_CHECK_SECONDS = 0.5
 
 
 def _limit_memory(megabytes: int) -> None:
@@ -24,6 +28,14 @@ def _limit_memory(megabytes: int) -> None:
         return  # no such limit on this system; the parent watches the resident set anyway
     limit = megabytes * 1024 * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+
+
+def _end_with_parent() -> None:
+    """End this process soon after its parent, however that ended: nobody waits for the rows."""
+    parent = os.getppid()
+    while os.getppid() == parent:
+        time.sleep(PARENT_CHECK_SECONDS)
+    os._exit(1)
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
@@ -49,6 +61,7 @@ def main() -> None:
     if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {int(core)})
     _limit_memory(int(megabytes))
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     with Connection(int(descriptor)) as pipe:
         serve(pipe, Heartbeat(Path(page)))
 
