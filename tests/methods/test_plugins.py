@@ -223,6 +223,13 @@ def test_descriptors_that_are_not_finite_are_dropped() -> None:
     assert features.keypoints.xy.tolist() == [[0, 1]]
 
 
+def test_descriptors_are_made_contiguous_as_opencv_needs_them() -> None:
+    rows = np.zeros((3, 40), np.uint8)[:, :32]
+    stage = ArrayDescriptor(Returns(Features(THREE, rows)), "uint8")
+    features = stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+    assert features.descriptors.flags.c_contiguous
+
+
 def pairs(*indices: tuple[int, int]) -> Matches:
     return Matches(np.array(indices, np.int32), np.zeros(len(indices), np.float32))
 
