@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from aerocues.evaluation.protocol import ChanceTest, Verification
+from aerocues.evaluation.clock import Clock
+from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.evaluation.verification import (
     Model,
-    chance_inliers,
+    Verdict,
+    Verifier,
     estimate_homography,
-    find_fundamental,
     magsac_parameters,
-    read_model,
 )
 
 Points = NDArray[np.float32]
@@ -61,9 +61,17 @@ def sampson(
     return distances
 
 
+def verify(
+    points_1: Points, points_2: Points, *, chance: ChanceTest | None = None, seed: int = 0
+) -> Verdict:
+    """Verify matches of which those in front have the smallest descriptor distance."""
+    protocol = MeasurementProtocol(seed=seed, verification=SETTINGS, chance=chance)
+    verifier = Verifier(protocol, Clock(memory=False))
+    return verifier.verify(points_1, points_2, np.arange(len(points_1)))
+
+
 def fundamental_of(points_1: Points, points_2: Points) -> Model:
-    raw = find_fundamental(points_1, points_2, magsac_parameters(SETTINGS))
-    return read_model(raw, len(points_1))
+    return verify(points_1, points_2).model
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -86,18 +94,19 @@ def test_inliers_of_a_known_geometry_are_found(seed: int) -> None:
 def test_parameters_equal_the_default_of_opencv_byte_for_byte(seed: int) -> None:
     first, second, _ = two_views(60 + 40 * seed, 50, noise=0.8, seed=seed)
     default, default_mask = cv2.findFundamentalMat(first, second, cv2.USAC_MAGSAC)
-    matrix, mask = find_fundamental(first, second, magsac_parameters(SETTINGS))
+    matrix, mask = cv2.findFundamentalMat(first, second, magsac_parameters(SETTINGS))
     assert matrix.tobytes() == default.tobytes()
     assert mask.tobytes() == default_mask.tobytes()
+    verdict = verify(first, second)
+    assert verdict.model.matrix is not None
+    assert verdict.model.matrix.tobytes() == default.tobytes()
+    assert verdict.model.inliers.tolist() == default_mask.ravel().astype(bool).tolist()
+    assert verdict.sampling == "uniform"
 
 
 def test_verification_repeats_exactly_whatever_the_seed_of_opencv() -> None:
     first, second, _ = two_views(80, 100)
-    found = []
-    for seed in (0, 1, 99):
-        cv2.setRNGSeed(seed)
-        matrix, mask = find_fundamental(first, second, magsac_parameters(SETTINGS))
-        found.append((matrix.tobytes(), mask.tobytes()))
+    found = [verify(first, second, seed=seed).model.inliers.tobytes() for seed in (0, 1, 99)]
     assert len(set(found)) == 1
 
 
@@ -107,10 +116,11 @@ def test_settings_reach_opencv() -> None:
     assert parameters.confidence == 0.999
     assert parameters.maxIterations == 5000
     first, second, _ = two_views(200, 0, noise=1.0)
-    counts = [
-        read_model(find_fundamental(first, second, magsac_parameters(Verification(t))), 200).count
-        for t in (0.5, 1.5, 3.0)
-    ]
+    counts = []
+    for threshold in (0.5, 1.5, 3.0):
+        protocol = MeasurementProtocol(verification=Verification(threshold), chance=None)
+        verifier = Verifier(protocol, Clock(memory=False))
+        counts.append(verifier.verify(first, second, np.arange(200)).model.count)
     assert counts[0] < counts[1] < counts[2]
 
 
@@ -141,10 +151,16 @@ NOT_A_MODEL = [
 
 
 @pytest.mark.parametrize("raw", NOT_A_MODEL)
-def test_what_is_no_single_matrix_of_rank_two_is_no_model(raw: tuple[object, object]) -> None:
-    model = read_model(raw, 8)
-    assert model.matrix is None
-    assert model.inliers.tolist() == [False] * 8
+def test_what_is_no_single_matrix_of_rank_two_is_no_model(
+    raw: tuple[object, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cv2, "findFundamentalMat", lambda *arguments: raw)
+    first, second, _ = two_views(8, 0)
+    for chance in (None, ChanceTest()):
+        verdict = verify(first, second, chance=chance)
+        assert verdict.model.matrix is None
+        assert verdict.model.inliers.tolist() == [False] * 8
+        assert not verdict.passed
 
 
 def test_an_exact_homography_is_found() -> None:
@@ -154,7 +170,7 @@ def test_an_exact_homography_is_found() -> None:
     moved = np.column_stack([first, np.ones(60)]) @ truth.T
     second = (moved[:, :2] / moved[:, 2:]).astype(np.float32)
     second[50:] = random.uniform((0, 0), (WIDTH, HEIGHT), (10, 2))
-    model = estimate_homography(first, second, SETTINGS)
+    model = estimate_homography(first, second, magsac_parameters(SETTINGS))
     assert model.matrix is not None
     np.testing.assert_allclose(model.matrix / model.matrix[2, 2], truth, rtol=1e-3, atol=1e-6)
     assert model.inliers[:50].all()
@@ -164,32 +180,57 @@ def test_an_exact_homography_is_found() -> None:
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_a_homography_needs_four_points(count: int) -> None:
     points = np.random.default_rng(0).uniform(0, 100, (count, 2)).astype(np.float32)
-    model = estimate_homography(points, points, SETTINGS)
+    model = estimate_homography(points, points, magsac_parameters(SETTINGS))
     assert model.matrix is None
     assert model.inliers.shape == (count,)
-
-
-def passes(points_1: Points, points_2: Points, test: ChanceTest) -> bool:
-    _, largest = chance_inliers(points_1, points_2, SETTINGS, test, seed=0)
-    return fundamental_of(points_1, points_2).count > test.factor * largest
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_true_matches_beat_chance_and_random_ones_do_not(seed: int) -> None:
     first, second, _ = two_views(60, 100, seed=seed)
-    assert passes(first, second, ChanceTest())
+    verdict = verify(first, second, chance=ChanceTest())
+    assert verdict.passed
+    assert verdict.chance_max is not None
+    assert verdict.model.count > ChanceTest().factor * verdict.chance_max
     wrong_1, wrong_2, _ = two_views(0, 200, seed=seed)
-    assert not passes(wrong_1, wrong_2, ChanceTest())
+    verdict = verify(wrong_1, wrong_2, chance=ChanceTest())
+    assert not verdict.passed
+    assert verify(wrong_1, wrong_2).passed
+
+
+def test_guided_sampling_finds_few_true_matches_that_come_first() -> None:
+    """One in six: uniform samples of seven are hardly ever all right, the nearest are."""
+    first, second, _ = two_views(30, 150, seed=3)
+    alone = verify(first, second)
+    assert alone.sampling == "uniform"
+    verdict = verify(first, second, chance=ChanceTest())
+    assert verdict.passed
+    assert verdict.model.inliers[:30].mean() > 0.8
+    shuffled = np.random.default_rng(0).permutation(180)
+    protocol = MeasurementProtocol(verification=SETTINGS)
+    verifier = Verifier(protocol, Clock(memory=False))
+    mixed = verifier.verify(first[shuffled], second[shuffled], np.argsort(shuffled))
+    assert mixed.passed
+    # Inliers are told in the order of the matches, not in that of their distances.
+    assert mixed.model.inliers[np.argsort(shuffled)][:30].mean() > 0.8
 
 
 def test_the_chance_test_is_seeded_and_counts_as_it_says() -> None:
-    first, second, _ = two_views(30, 100)
-    mean, largest = chance_inliers(first, second, SETTINGS, ChanceTest(), seed=5)
-    assert (mean, largest) == chance_inliers(first, second, SETTINGS, ChanceTest(), seed=5)
-    assert 0 < mean <= largest < 40
-    one = chance_inliers(first, second, SETTINGS, ChanceTest(shuffles=1), seed=5)
-    assert one[0] == one[1] <= largest
-    # The mean over more shuffles is another one: the shuffles differ.
-    assert (
-        len({chance_inliers(first, second, SETTINGS, ChanceTest(n), 5)[0] for n in (1, 2, 3)}) > 1
-    )
+    first, second, _ = two_views(100, 100)
+    one, again = (verify(first, second, chance=ChanceTest(), seed=5) for _ in range(2))
+    assert (one.chance_mean, one.chance_max) == (again.chance_mean, again.chance_max)
+    assert one.chance_mean is not None
+    assert one.chance_max is not None
+    assert 0 < one.chance_mean <= one.chance_max < 100
+    single = verify(first, second, chance=ChanceTest(shuffles=1), seed=5)
+    assert single.chance_mean == single.chance_max
+    assert verify(first, second).chance_mean is None
+    means = {verify(first, second, chance=ChanceTest(n)).chance_mean for n in (1, 2, 3)}
+    assert len(means) > 1
+
+
+def test_the_shuffled_estimations_are_not_timed() -> None:
+    first, second, _ = two_views(100, 100)
+    verdict = verify(first, second, chance=ChanceTest(shuffles=200))
+    alone = verify(first, second)
+    assert 0 < verdict.time.cpu < 50 * max(alone.time.cpu, 1e-3)

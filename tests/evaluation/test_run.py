@@ -1,0 +1,254 @@
+"""The whole way from a dataset to a table: statuses, resuming, plug-ins, exclusive times."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import SelectionError
+from aerocues.evaluation.engine import Finished
+from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.run import Limits, Observer, plan_run, run
+from aerocues.evaluation.schema import COLUMNS
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import (
+    assert_same_rows,
+    rows_of,
+    shift_of_strip,
+    strip,
+    write_dataset,
+)
+from tests.methods.arena import CODE, ENTRY_POINTS
+from tests.methods.distribution import write_distribution
+from tests.methods.pictures import textured
+
+FEW = "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-FLANN,AKAZE-SIFT-L2-BF"
+
+
+class Counting(Observer):
+    """Counts the rows that were really measured."""
+
+    def __init__(self) -> None:
+        self.rows = 0
+        self.plan: Plan | None = None
+
+    def planned(self, plan: Plan) -> None:
+        self.plan = plan
+
+    def finished(self, finished: Finished) -> None:
+        self.rows += len(finished.rows)
+
+
+def test_views_of_a_plane_are_measured_with_the_truth(tmp_path: Path) -> None:
+    truth = shift_of_strip()
+    dataset = write_dataset(tmp_path / "images", strip(3), homographies=[truth, truth])
+    results = run(dataset, FEW, tmp_path / "results", engine=InlineEngine())
+    table = results.table()
+    assert len(table) == 6
+    for row in table.to_dicts():
+        assert row["status"] == "ok", row["message"]
+        assert row["message"] is None
+        assert row["gt_precision@3"] > 0.8
+        assert row["gt_repeatability"] > 0.3
+        assert row["homography_error"] < 1
+        assert row["homography_auc@3"] == pytest.approx(1 - row["homography_error"] / 3)
+        assert 0 < row["inliers"] <= row["matches"] <= min(row["keypoints_1"], row["keypoints_2"])
+        assert row["inliers"] > 1.4 * row["chance_inliers_max"] >= 1.4 * row["chance_inliers"]
+        assert row["total_seconds"] > 0
+        assert row["settings_key"] == results.settings["settings_key"]
+        assert (row["timing"], row["seed"], row["preset"]) == ("shared", 0, "default")
+        assert row["peak_memory_mb"] is None
+    assert table["descriptor_bytes"].unique().sort().to_list() == [16, 32, 512]
+    assert results.status().left == 0
+    assert results.settings["rows_planned"] == 6
+    assert len(results.settings["combinations"]) == 3
+
+
+def test_the_second_run_measures_nothing(views: Dataset, tmp_path: Path) -> None:
+    first, second = Counting(), Counting()
+    before = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=first).table())
+    after = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=second).table())
+    assert (first.rows, second.rows) == (9, 0)
+    assert before == after
+
+
+def test_more_combinations_measure_only_the_new(views: Dataset, tmp_path: Path) -> None:
+    run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())
+    plan = plan_run(views, FEW, tmp_path / "r")
+    assert (plan.rows_planned, plan.rows_present, plan.rows_left) == (9, 3, 6)
+    counting = Counting()
+    results = run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
+    assert counting.rows == 6
+    assert len(results.table()) == 9
+
+
+def test_a_changed_image_is_measured_again(tmp_path: Path) -> None:
+    pictures = strip(3)
+    dataset = write_dataset(tmp_path / "images", pictures)
+    before = rows_of(run(dataset, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine()).table())
+    pictures["view_2.png"][40:90, 60:120] = 30
+    dataset = write_dataset(tmp_path / "images", pictures)
+    counting = Counting()
+    results = run(
+        dataset, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), observer=counting
+    )
+    after = rows_of(results.table())
+    assert counting.rows == 1
+    assert {name[1] for name in before if before[name] != after[name]} == {1}
+
+
+def test_another_seed_gives_a_table_of_its_own(views: Dataset, tmp_path: Path) -> None:
+    run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())
+    other = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", seed=1, engine=InlineEngine())
+    assert other.table()["seed"].to_list() == [1, 1, 1]
+    again = Counting()
+    back = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), observer=again)
+    assert again.rows == 0
+    assert back.table()["seed"].to_list() == [0, 0, 0]
+
+
+def test_images_without_content_end_in_a_status(tmp_path: Path) -> None:
+    """Black, tiny, unrelated, truncated images and images of unequal size: a row each."""
+    noise = np.random.default_rng(1).integers(0, 256, (2, 180, 240, 3)).astype(np.uint8)
+    pictures = {
+        "good.png": textured(240, 180, seed=5),
+        "black.png": np.zeros((180, 240, 3), np.uint8),
+        "tiny.png": textured(40, 30),
+        "pixel.png": np.full((1, 1, 3), 90, np.uint8),
+        "noise_1.png": noise[0],
+        "noise_2.png": noise[1],
+        "large.png": textured(420, 300, seed=5),
+        "broken.png": textured(240, 180),
+    }
+    pairs = [
+        ("good.png", "black.png"),
+        ("tiny.png", "good.png"),
+        ("good.png", "pixel.png"),
+        ("noise_1.png", "noise_2.png"),
+        ("good.png", "large.png"),
+        ("broken.png", "good.png"),
+        ("good.png", "good.png"),
+        ("black.png", "broken.png"),
+    ]
+    dataset = write_dataset(tmp_path / "images", pictures, pairs)
+    broken = tmp_path / "images" / "broken.png"
+    broken.write_bytes(broken.read_bytes()[:4000])
+    table = run(
+        dataset,
+        "FAST-FREAK-HAM-BF,ORB-ORB-HAM-BF,SIFT-SIFT-L2-*",
+        tmp_path / "r",
+        engine=InlineEngine(),
+    ).table()
+    assert len(table) == 8 * 4
+    of = {(r["pair"], r["detector"], r["matcher"]): r for r in table.to_dicts()}
+
+    def statuses(pair: int) -> set[str]:
+        return {row["status"] for (number, _, _), row in of.items() if number == pair}
+
+    assert statuses(0) == {"no_keypoints"}
+    assert of[0, "SIFT", "BF"]["keypoints_1"] > 0
+    assert of[0, "SIFT", "BF"]["keypoints_2"] == 0
+    assert of[0, "SIFT", "BF"]["matches"] is None
+    assert of[1, "FAST", "BF"]["status"] == "no_descriptors"
+    assert "ok" not in statuses(1)
+    assert statuses(2) == {"no_keypoints"}
+    assert statuses(3) <= {"chance", "too_few_matches", "no_model"}
+    assert "chance" in statuses(3)
+    assert statuses(6) == {"ok"}
+    assert of[6, "SIFT", "BF"]["precision"] == 1
+    for pair in (5, 7):
+        assert statuses(pair) == {"error"}
+    for (pair, _, _), row in of.items():
+        assert row["status"] != "crashed"
+        if row["status"] == "error":
+            assert "broken.png" in row["message"]
+            assert pair in (5, 7)
+    assert (
+        len({row["keypoints_1"] for (pair, d, _), row in of.items() if (pair, d) == (4, "SIFT")})
+        == 1
+    )
+    assert statuses(4) <= {"ok", "chance"}
+
+
+def test_the_thesis_preset_does_not_ask_for_chance(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (2, 180, 240, 3)).astype(np.uint8)
+    dataset = write_dataset(tmp_path / "images", {"a.png": noise[0], "b.png": noise[1]})
+    table = run(
+        dataset, "SIFT-SIFT-L2-BF", tmp_path / "r", preset="thesis", engine=InlineEngine()
+    ).table()
+    [row] = table.to_dicts()
+    assert row["status"] == "ok"
+    assert row["preset"] == "thesis"
+    assert row["chance_inliers"] is None
+    assert row["excess_inliers"] is None
+    assert row["precision"] > 0
+
+
+def test_exclusive_times_say_so_and_know_the_memory(views: Dataset, tmp_path: Path) -> None:
+    shared = run(views, FEW, tmp_path / "r", engine=InlineEngine()).table()
+    exclusive = run(views, FEW, tmp_path / "r", timing="exclusive").table()
+    assert exclusive["timing"].to_list() == ["exclusive"] * 9
+    assert_same_rows(rows_of(exclusive), rows_of(shared))
+    if Path("/proc/self/clear_refs").exists():
+        assert exclusive["peak_memory_mb"].null_count() == 0
+        assert exclusive["peak_memory_mb"].max() > 0
+    counting = Counting()
+    run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
+    assert counting.rows == 0
+
+
+def test_exclusive_timing_takes_one_worker(views: Dataset, tmp_path: Path) -> None:
+    with pytest.raises(SelectionError, match="exclusive timing"):
+        run(views, FEW, tmp_path / "r", timing="exclusive", limits=Limits(workers=2))
+
+
+@pytest.mark.parametrize("limits", [Limits(workers=-1), Limits(timeout=0), Limits(timeout=-3)])
+def test_limits_must_be_positive(views: Dataset, tmp_path: Path, limits: Limits) -> None:
+    with pytest.raises(SelectionError, match="must be positive"):
+        run(views, FEW, tmp_path / "r", limits=limits)
+    assert not (tmp_path / "r").exists()
+
+
+def test_every_stage_is_timed(views: Dataset, tmp_path: Path) -> None:
+    table = run(views, FEW, tmp_path / "r", engine=InlineEngine()).table()
+    for column in COLUMNS:
+        if column.unit == "s":
+            assert table[column.name].null_count() == 0, column.name
+            assert table[column.name].min() >= 0, column.name
+    first = table.row(0, named=True)
+    expected = (
+        (first["detect_seconds_1"] + first["detect_seconds_2"]) / 2
+        + (first["describe_seconds_1"] + first["describe_seconds_2"]) / 2
+        + first["match_seconds"]
+        + first["verify_seconds"]
+    )
+    assert first["total_seconds"] == pytest.approx(expected)
+
+
+def test_plug_ins_run_end_to_end(
+    views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = tmp_path / "site"
+    write_distribution(site, "feature-arena", ENTRY_POINTS, CODE, version="0.3")
+    monkeypatch.syspath_prepend(site)
+    for name in [name for name in sys.modules if name.split(".")[0] == "arena"]:
+        monkeypatch.delitem(sys.modules, name)
+    results = run(
+        views,
+        "CORNERS-PATCHES-L2-MUTUAL,CORNERS-ORB-HAM-BF,CORNER_BITS-CORNER_BITS-HAM-*,"
+        "SIFT-PATCHES-L2-FLANN,CORNER_BITS-SIFT-L2-MUTUAL",
+        tmp_path / "r",
+        limits=Limits(workers=1, timeout=60),
+    )
+    table = results.table()
+    assert len(table) == 6 * 3
+    for row in table.to_dicts():
+        assert row["status"] == "ok", (row["detector"], row["message"])
+    parameters = results.settings["parameters"]["CORNERS-PATCHES-L2-MUTUAL"]
+    assert parameters["detector"] == ["feature-arena 0.3", "arena.methods:Corners", {"step": 1}]
+    with pytest.raises(SelectionError, match="package_that_nobody_has"):
+        run(views, "NEEDY-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())

@@ -1,0 +1,207 @@
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aerocues.errors import StoreError
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.schema import COLUMNS, empty_row
+from aerocues.evaluation.store import Store
+
+
+def row(number: int, **values: Any) -> dict[str, Any]:
+    return {
+        **empty_row(),
+        "dataset": "d",
+        "sequence": "s",
+        "pair": number,
+        "image_1": "a",
+        "image_2": "b",
+        "detector": "ORB",
+        "descriptor": "ORB",
+        "norm": "HAM",
+        "matcher": "BF",
+        "status": "ok",
+        "timing": "shared",
+        "settings_key": "now",
+        "row_key": f"key-{number}",
+        **values,
+    }
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    made = Store.create(tmp_path / "results")
+    made.write_run({"settings_key": "now", "rows_planned": 9})
+    return made
+
+
+def write(store: Store, name: str, rows: list[dict[str, Any]], when: int) -> None:
+    """Store rows as if at a certain second."""
+    store.write_rows(name, rows)
+    os.utime(store.folder / "parts" / f"{name}.parquet", (when, when))
+
+
+def test_rows_come_back_with_their_types(store: Store) -> None:
+    values = {"matches": 7, "precision": 0.1 + 0.2, "message": "größe", "gt_precision@3": None}
+    store.write_rows("one", [row(1, **values, homography_error=float("inf"))])
+    [got] = store.table().to_dicts()
+    assert got == row(1, **values, homography_error=float("inf"))
+    assert list(got) == [column.name for column in COLUMNS]
+
+
+def test_rows_come_in_a_fixed_order_whenever_they_were_written(store: Store) -> None:
+    write(store, "z", [row(3), row(1)], 100)
+    write(store, "a", [row(2), row(1, detector="AKAZE")], 200)
+    order = [(r["pair"], r["detector"]) for r in store.table().to_dicts()]
+    assert order == [(1, "AKAZE"), (1, "ORB"), (2, "ORB"), (3, "ORB")]
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("b", "a")])
+def test_the_newest_row_wins(store: Store, names: tuple[str, str]) -> None:
+    write(store, names[0], [row(1, status="crashed"), row(2)], 100)
+    write(store, names[1], [row(1, matches=5)], 200)
+    got = store.table().to_dicts()
+    assert [(r["pair"], r["status"], r["matches"]) for r in got] == [(1, "ok", 5), (2, "ok", None)]
+
+
+@pytest.mark.parametrize("exclusive_first", [True, False])
+def test_exclusive_times_come_before_shared_ones(store: Store, exclusive_first: bool) -> None:
+    times = (100, 200) if exclusive_first else (200, 100)
+    write(store, "a", [row(1, timing="exclusive", match_seconds=1.0)], times[0])
+    write(store, "b", [row(1, timing="shared", match_seconds=2.0)], times[1])
+    [got] = store.table().to_dicts()
+    assert (got["timing"], got["match_seconds"]) == ("exclusive", 1.0)
+
+
+def test_rows_of_other_settings_are_left_out(store: Store) -> None:
+    write(
+        store, "old", [row(1, settings_key="before", matches=1), row(2, settings_key="before")], 1
+    )
+    write(store, "new", [row(1, matches=2)], 2)
+    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 2)]
+    store.write_run({"settings_key": "before"})
+    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 1), (2, None)]
+
+
+def test_what_is_present_need_not_be_measured_again(store: Store) -> None:
+    store.write_rows("a", [row(1), row(2, status="chance"), row(3, timing="exclusive")])
+    failed = ("error", "crashed", "timeout", "out_of_memory")
+    store.write_rows("b", [row(4 + i, status=status) for i, status in enumerate(failed)])
+    everything = {f"key-{i}" for i in range(1, 8)}
+    assert store.present("shared", retry_failed=False) == everything
+    assert store.present("exclusive", retry_failed=False) == {"key-3"}
+    assert store.present("shared", retry_failed=True) == {"key-1", "key-2", "key-3"}
+
+
+def test_an_empty_folder_has_an_empty_table(store: Store) -> None:
+    assert store.table().shape == (0, len(COLUMNS))
+    assert store.present("shared", retry_failed=False) == frozenset()
+
+
+def test_leftovers_of_an_interrupted_writing_are_removed(store: Store) -> None:
+    store.write_rows("kept", [row(1)])
+    for path in ("parts/x.parquet.77.tmp", "run.json.77.tmp"):
+        (store.folder / path).write_bytes(b"half")
+    assert len(store.table()) == 1
+    again = Store.create(store.folder)
+    assert not list(store.folder.rglob("*.tmp"))
+    assert len(again.table()) == 1
+
+
+def test_writing_leaves_nothing_beside(store: Store) -> None:
+    store.write_rows("one", [row(1)])
+    names = {path.name for path in store.folder.rglob("*") if path.is_file()}
+    assert names == {"one.parquet", "run.json"}
+
+
+def test_a_failed_writing_leaves_the_old_part(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store.write_rows("one", [row(1, matches=1)])
+
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(StoreError, match=r"No space left on device.*run the same command again"):
+        store.write_rows("one", [row(1, matches=2)])
+    assert not list(store.folder.rglob("*.tmp"))
+    assert store.table()["matches"].to_list() == [1]
+
+
+@pytest.mark.parametrize("content", [b"", b"no parquet at all", b"PAR1" + b"x" * 200 + b"PAR1"])
+def test_a_damaged_part_is_an_error_with_the_next_step(store: Store, content: bytes) -> None:
+    store.write_rows("good", [row(1)])
+    (store.folder / "parts" / "bad.parquet").write_bytes(content)
+    for read in (store.table, lambda: store.present("shared", retry_failed=False)):
+        with pytest.raises(StoreError, match="remove the damaged part"):
+            read()
+
+
+@pytest.mark.parametrize("content", ["", "{", "[1, 2]", "\x00"])
+def test_a_damaged_record_of_the_run_is_an_error_with_the_next_step(
+    store: Store, content: str
+) -> None:
+    (store.folder / "run.json").write_text(content)
+    with pytest.raises(StoreError, match=r"again"):
+        Store.open(store.folder).run()
+
+
+def test_a_damaged_record_is_restored_by_the_next_run(store: Store) -> None:
+    store.write_rows("one", [row(1)])
+    (store.folder / "run.json").write_text("{")
+    again = Store.create(store.folder)
+    again.write_run({"settings_key": "now"})
+    assert len(again.table()) == 1
+
+
+def test_folders_that_are_no_results_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match=r"no results folder.*aerocues run"):
+        Store.open(tmp_path)
+    with pytest.raises(StoreError, match="no results folder"):
+        Results(tmp_path / "missing")
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(StoreError, match="is a file"):
+        Store.create(tmp_path / "file")
+    with pytest.raises(StoreError, match=r"cannot write|is a file"):
+        Store.create(tmp_path / "file" / "below")
+    with pytest.raises(StoreError, match=r"holds other files.*empty folder"):
+        Store.create(tmp_path)
+
+
+def test_the_record_of_the_run_is_readable_json(store: Store) -> None:
+    store.write_run({"settings_key": "now", "path": Path("a"), "values": (1, 2)})
+    content = json.loads((store.folder / "run.json").read_text())
+    assert content == {"settings_key": "now", "path": "a", "values": [1, 2]}
+
+
+def test_status_counts_what_is_done_left_and_failed(store: Store) -> None:
+    store.write_rows(
+        "a",
+        [
+            row(1),
+            row(2, status="error", message="why"),
+            row(3, status="error", message="why too", descriptor="BRISK"),
+            row(4, status="error", message="again"),
+            row(5, status="chance"),
+        ],
+    )
+    status = Results(store.folder).status()
+    assert (status.planned, status.done, status.left) == (9, 5, 4)
+    assert status.statuses == {"error": 3, "chance": 1, "ok": 1}
+    failures = {(f["status"], f["descriptor"]): f["rows"] for f in status.failures.to_dicts()}
+    assert failures == {("chance", "ORB"): 1, ("error", "ORB"): 2, ("error", "BRISK"): 1}
+
+
+def test_sql_answers_and_explains_itself(store: Store) -> None:
+    store.write_rows("a", [row(1, matches=4), row(2, matches=6)])
+    results = Results(store.folder)
+    assert results.sql("SELECT sum(matches) AS total FROM results").to_dicts() == [{"total": 10}]
+    for query in ("SELEC", "SELECT nothing FROM results", "SELECT * FROM rows"):
+        with pytest.raises(StoreError, match="the table is called results"):
+            results.sql(query)
