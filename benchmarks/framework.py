@@ -1,0 +1,101 @@
+"""What the framework costs and what it saves, against bare loops over the same OpenCV calls.
+
+Three figures on the embedded dataset (or any other):
+
+- overhead: CPU seconds of a run with one worker over those of a bare loop that makes the same
+  calls (decode, detect, describe, match, verify, verify shuffled matches, homography), once each;
+- speed-up: wall seconds with one worker over those with two;
+- saving: CPU seconds of a naive loop, in which every combination detects and describes for
+  itself, over those of the run.
+
+Each is measured `--repeats` times in turn, so that a change of the machine's speed meets all alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+COMBINATIONS = (
+    "SIFT-SIFT-L2-*,ORB-ORB-HAM-*,ORB-BEBLID-HAM-BF,ORB-FREAK-HAM-BF,ORB-TEBLID-HAM-BF,"
+    "AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,AKAZE-KAZE-L2-FLANN,BRISK-BRISK-HAM-*,"
+    "GFTT_H-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,MSD-ORB-HAM-BF,MSD-BOOST-HAM-BF,KAZE-KAZE-L2-BF"
+)
+RUN = """
+import json, sys, time, resource
+import aerocues
+started = time.perf_counter()
+dataset = aerocues.open_dataset({dataset!r}, limit={limit})
+limits = aerocues.Limits(workers={workers})
+results = aerocues.run(dataset, {combinations!r}, {output!r}, limits=limits)
+wall = time.perf_counter() - started
+cpu = sum(
+    usage.ru_utime + usage.ru_stime
+    for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+)
+print(json.dumps({{"wall": wall, "cpu": cpu, "rows": len(results.table())}}))
+"""
+LOOP = """
+import json, sys, time
+sys.path.insert(0, {folder!r})
+from bare_loop import BareLoop
+loop = BareLoop({dataset!r}, {limit}, naive={naive})
+print(json.dumps({{"cpu": loop.run({combinations!r})}}))
+"""
+
+
+def _measure(code: str) -> dict[str, float]:
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def _run(arguments: argparse.Namespace, workers: int) -> dict[str, float]:
+    with tempfile.TemporaryDirectory() as output:
+        return _measure(RUN.format(**vars(arguments), workers=workers, output=f"{output}/results"))
+
+
+def _loop(arguments: argparse.Namespace, *, naive: bool) -> dict[str, float]:
+    folder = str(Path(__file__).parent)
+    return _measure(LOOP.format(**vars(arguments), naive=naive, folder=folder))
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--dataset", default="synthetic")
+    parser.add_argument("--limit", type=int, default=5, help="pairs")
+    parser.add_argument("--combinations", default=COMBINATIONS)
+    parser.add_argument("--repeats", type=int, default=3)
+    arguments = parser.parse_args()
+    overhead, speed_up, saving = [], [], []
+    for _ in range(arguments.repeats):
+        bare = _loop(arguments, naive=False)
+        one = _run(arguments, 1)
+        two = _run(arguments, 2)
+        naive = _loop(arguments, naive=True)
+        overhead.append(one["cpu"] / bare["cpu"])
+        speed_up.append(one["wall"] / two["wall"])
+        saving.append(naive["cpu"] / one["cpu"])
+        print(
+            f"{one['rows']:.0f} rows: bare {bare['cpu']:.1f} s, run {one['cpu']:.1f} s CPU in "
+            f"{one['wall']:.1f} s, two workers {two['wall']:.1f} s, naive {naive['cpu']:.1f} s",
+            flush=True,
+        )
+    for name, figures in (
+        ("overhead (CPU of the run / bare calls)", overhead),
+        ("speed-up from 1 to 2 workers (wall)", speed_up),
+        ("saving (CPU of the naive loop / run)", saving),
+    ):
+        spread = f"{min(figures):.3f} to {max(figures):.3f}"
+        print(f"{name}: median {statistics.median(figures):.3f} ({spread})")
+
+
+if __name__ == "__main__":
+    main()
