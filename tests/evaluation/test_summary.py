@@ -22,7 +22,7 @@ def table(*rows: dict[str, Any]) -> pl.DataFrame:
     return pl.DataFrame(rows, schema=polars_schema(), orient="row")
 
 
-def counted(precision: float, matches: int, inliers: int) -> dict[str, float]:
+def counted(precision: float, matches: int, inliers: int) -> dict[str, Any]:
     return {"precision": precision, "matches": matches, "inliers": inliers}
 
 
@@ -48,7 +48,7 @@ def test_medians_count_pairs_without_success_as_zero() -> None:
 
 
 def test_times_are_medians_where_they_were_measured() -> None:
-    def times(first: float, second: float, match: float) -> dict[str, float]:
+    def times(first: float, second: float, match: float) -> dict[str, Any]:
         return {
             "detect_seconds_1": first,
             "detect_seconds_2": second,

@@ -34,16 +34,16 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     StoreError
         If it cannot be written.
     """
-    target = target.expanduser().resolve()
-    is_special = target.exists() and not target.is_file() and not target.is_dir()
-    beside = target if is_special else target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    path = target.expanduser().resolve()  # a link stays a link
+    is_special = path.exists() and not path.is_file() and not path.is_dir()
+    beside = path if is_special else path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        if target.is_dir():
+        if path.is_dir():
             raise IsADirectoryError(None, "it is a folder")
         with beside.open("wb") as file:
             WRITERS[form](table, file)
         if not is_special:
-            beside.replace(target)
+            beside.replace(path)
     except OSError as error:
         raise StoreError(
             f"cannot write {target}: {error.strerror or error}; give another file"

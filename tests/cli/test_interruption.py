@@ -1,0 +1,71 @@
+"""Ctrl-C and the signals that end a process: what is stored stays, no worker is left behind."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from aerocues.evaluation.results import Results
+
+# A shell that starts tests in the background makes them ignore SIGINT, and children inherit that.
+PROGRAM = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from aerocues.cli import main; main()"
+)
+COMBINATIONS = "*-BRIEF-HAM-BF,*-SIFT-L2-BF,*-DAISY-L2-BF,!TBMR-*,!MSD-SIFT-*"
+ROWS = 3 * (13 + 12 + 13)
+
+
+def begin(photos: Path, output: Path) -> subprocess.Popen[str]:
+    words = ["run", str(photos), "-o", str(output), "--combinations", COMBINATIONS]
+    return subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, *words, "--workers", "1"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def wait_for_a_part(process: subprocess.Popen[str], output: Path) -> None:
+    while not list(output.glob("parts/*.parquet")):
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupted_run_says_so_and_goes_on(
+    photos: Path, tmp_path: Path, number: signal.Signals, code: int
+) -> None:
+    output = tmp_path / "results"
+    process = begin(photos, output)
+    wait_for_a_part(process, output)
+    workers = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == code
+    assert out == ""
+    _, alive = psutil.wait_procs(workers, timeout=5)
+    assert workers
+    assert alive == []
+
+    stored = len(Results(output).table())
+    assert 0 < stored < ROWS
+    last_line = err.splitlines()[-1]
+    assert last_line == (
+        f"interrupted; {stored} rows are stored; run the same command again to go on"
+    )
+    assert "Traceback" not in err
+
+    again = begin(photos, output)
+    out, err = again.communicate(timeout=100)
+    assert again.returncode == 0, err
+    assert f"{stored} rows are there already" in err
+    status = Results(output).status()
+    assert (status.done, status.left) == (ROWS, 0)

@@ -1,0 +1,81 @@
+"""`aerocues methods`: the list, the choice and the reasons."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.cli.conftest import Call
+
+
+def test_the_figures_of_opencv(call: Call) -> None:
+    facts = json.loads(call("methods", "--json").out)["opencv"]
+    figures = {name: facts[name] for name in ("declared", "runnable", "meaningful")}
+    assert figures == {"declared": 784, "runnable": 467, "meaningful": 340}
+    assert sorted(facts["incompatible"].values()) == [8, 86, 96, 127]
+    assert facts["declared"] == facts["runnable"] + sum(facts["incompatible"].values())
+
+
+def test_every_method_is_listed_with_its_source(call: Call) -> None:
+    facts = json.loads(call("methods", "--json").out)
+    text = call("methods").out
+    methods = [*facts["detectors"], *facts["descriptors"]]
+    assert len(methods) >= 28
+    for method in methods:
+        assert {"name", "parameters", "origin", "reference", "unavailable"} <= method.keys()
+        assert method["name"] in text
+    assert facts["detectors"][0]["parameters"]["nfeatures"] == 30000
+    assert [row["name"] for row in facts["norms"]] == ["L2", "HAM"]
+    assert [row["name"] for row in facts["matchers"]][:2] == ["BF", "FLANN"]
+    assert f"{facts['meaningful']}  of these mean something" in text
+    assert all(line == line.rstrip() for line in text.splitlines())
+
+
+def test_a_preset_is_named_and_must_exist(call: Call) -> None:
+    assert json.loads(call("methods", "--preset", "thesis", "--json").out)["preset"] == "thesis"
+    assert call("methods", "--preset", "nothing").code == 2
+
+
+@pytest.mark.parametrize(
+    ("combination", "answer"),
+    [
+        ("sift-sift-l2-bf", "SIFT-SIFT-L2-BF runs\n"),
+        ("SIFT-ORB-HAM-BF", "SIFT-ORB-HAM-BF cannot run: the ORB descriptor reads SIFT's packed"),
+        ("ORB-KAZE-L2-BF", "ORB-KAZE-L2-BF cannot run: the KAZE descriptor needs"),
+        ("SIFT-SIFT-HAM-BF", "SIFT-SIFT-HAM-BF cannot run: the Hamming norm compares bits"),
+        ("ORB-ORB-L2-FLANN", "ORB-ORB-L2-FLANN cannot run: FLANN under L2 needs float32"),
+        ("ORB-ORB-L2-BF", "ORB-ORB-L2-BF runs but means nothing: ORB descriptors are strings"),
+        ("ORB-LUCID-HAM-BF", "ORB-LUCID-HAM-BF runs; with gray images it is left out"),
+    ],
+)
+def test_why(call: Call, combination: str, answer: str) -> None:
+    given = call("methods", "why", combination)
+    assert given.code == 0
+    assert given.out.startswith(answer)
+    assert given.out.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("combination", "told"),
+    [
+        ("ORB-BEBLIT-HAM-BF", "there is no descriptor BEBLIT; did you mean BEBLID or TEBLID?"),
+        ("ORB-ORB-COSINE-BF", "there is no norm COSINE; known are L2, HAM"),
+        ("ORB-ORB", "is no combination; write DETECTOR-DESCRIPTOR-NORM-MATCHER"),
+    ],
+)
+def test_why_with_unknown_names(call: Call, combination: str, told: str) -> None:
+    given = call("methods", "why", combination)
+    assert given.code == 2
+    assert told in given.err
+
+
+def test_the_choice_is_listed_one_a_line(call: Call) -> None:
+    assert len(call("methods", "list").out.split()) >= 340
+    assert call("methods", "list", "orb-orb-*").out.split() == [
+        "ORB-ORB-HAM-BF",
+        "ORB-ORB-HAM-FLANN",
+    ]
+    narrowed = call("methods", "list", "--all", "--detectors", "ORB", "--descriptors", "ORB").out
+    assert narrowed.split() == ["ORB-ORB-L2-BF", "ORB-ORB-HAM-BF", "ORB-ORB-HAM-FLANN"]
+    assert call("methods", "list", "nothing").code == 2

@@ -1,0 +1,100 @@
+"""`aerocues results`: a summary, a query, files."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.schema import COLUMNS
+from tests.cli.conftest import Call
+
+
+def test_without_an_option_there_is_a_summary_with_all_columns(call: Call, finished: Path) -> None:
+    answer = call("results", finished)
+    assert answer.code == 0
+    assert "4 combinations on 3 pairs" in answer.out
+    assert "preset default, OpenCV" in answer.out
+    words = answer.out.replace(",", " ").split()
+    assert [column.name for column in COLUMNS if column.name not in words] == []
+
+
+def test_a_query_is_answered_as_a_table(call: Call, finished: Path) -> None:
+    query = "select detector, count(*) as n from results group by detector order by n, detector"
+    answer = call("results", finished, "--sql", query)
+    assert [line.split() for line in answer.out.splitlines()] == [
+        ["detector", "n"],
+        ["AKAZE", "3"],
+        ["GFTT", "3"],
+        ["ORB", "6"],
+    ]
+
+
+@pytest.mark.parametrize(
+    "query", ["nonsense", "", "select nothing from results", "select * from elsewhere"]
+)
+def test_a_wrong_query_is_told_in_one_line(call: Call, finished: Path, query: str) -> None:
+    answer = call("results", finished, "--sql", query)
+    assert answer.code == 2
+    assert answer.err.startswith("error: ")
+    assert answer.err.count("\n") == 1
+
+
+def test_csv_holds_every_row_and_column(call: Call, finished: Path, tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
+    file.write_text("an older file")
+    answer = call("results", finished, "--csv", file)
+    assert answer.code == 0
+    assert "12 rows" in answer.err
+    table = Results(finished).table()
+    read = pl.read_csv(file, schema=table.schema)
+    assert_frame_equal(read, table)
+    assert list(tmp_path.iterdir()) == [file]
+    assert call("results", finished, "--csv", "-").out == file.read_text()
+
+
+def test_parquet_holds_every_row_and_column(call: Call, finished: Path, tmp_path: Path) -> None:
+    file = tmp_path / "rows.parquet"
+    assert call("results", finished, "--parquet", file).code == 0
+    assert_frame_equal(pl.read_parquet(file), Results(finished).table())
+
+
+def test_parquet_goes_through_a_pipe(finished: Path) -> None:
+    command = [sys.executable, "-m", "aerocues", "results", str(finished), "--parquet", "-"]
+    piped = subprocess.run(command, capture_output=True, check=True)
+    assert_frame_equal(pl.read_parquet(io.BytesIO(piped.stdout)), Results(finished).table())
+
+
+def test_json_is_a_list_of_rows(call: Call, finished: Path) -> None:
+    rows = json.loads(call("results", finished, "--json").out)
+    assert len(rows) == 12
+    assert list(rows[0]) == [column.name for column in COLUMNS]
+
+
+def test_a_query_can_be_written_to_a_file(call: Call, finished: Path, tmp_path: Path) -> None:
+    file = tmp_path / "answer.csv"
+    query = "select detector from results where pair = 0"
+    assert call("results", finished, "--sql", query, "--csv", file).code == 0
+    assert sorted(file.read_text().split()) == ["AKAZE", "GFTT", "ORB", "ORB", "detector"]
+
+
+def test_what_cannot_be_written_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
+    for file in (tmp_path, tmp_path / "missing" / "rows.csv", "/proc/self/rows.csv"):
+        answer = call("results", finished, "--csv", file)
+        assert answer.code == 2
+        assert answer.err.startswith(f"error: cannot write {file}")
+        assert answer.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_two_forms_at_once_are_refused(call: Call, finished: Path) -> None:
+    answer = call("results", finished, "--csv", "-", "--json")
+    assert answer.code == 2
+    assert "choose one of" in answer.err

@@ -1,0 +1,132 @@
+"""`aerocues run`: measuring, going on, planning, refusing."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import COMBINATIONS, Call
+
+
+def test_a_run_ends_with_the_best_and_what_to_do_next(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "my results"
+    words = ("run", photos, "-o", output, "--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
+    first = call(*words, "--limit", 2)
+    assert first.code == 0
+    assert re.search(r"ORB-ORB-HAM-BF +[01]\.\d{3} +\d+ +\d+ +100 %", first.out)
+    assert "photos: 1 combination on 2 pairs" in first.out
+    assert re.search(r"rows +2: ok 2", first.out)
+    assert f"aerocues status '{output}'" in first.out
+    assert "2 rows to measure in 1 unit of work" in first.err
+    assert "measured 2 rows" in first.err
+
+    second = call(*words, "--limit", 2)
+    assert "nothing to measure: all 2 rows are there already" in second.err
+    assert second.out == first.out
+
+    more = call(*words)
+    assert "1 row to measure in 1 unit of work; 2 rows are there already" in more.err
+    assert "on 3 pairs" in more.out
+
+
+def test_the_table_fits_100_columns_and_names_the_stages(
+    call: Call, photos: Path, finished: Path
+) -> None:
+    words = ("run", photos, "-o", finished, "--combinations", COMBINATIONS, "--workers", 1)
+    answer = call(*words, "--top", 2)
+    assert answer.code == 0
+    table = answer.out.split("\n\n", maxsplit=1)[0].splitlines()
+    assert table[0] == "photos: best 2 of 4 combinations on 3 pairs"
+    assert max(map(len, table)) <= 100
+    assert table[2].split()[-4:] == ["detect", "describe", "match", "verify"]
+    ratios = [float(line.split()[1]) for line in table[3:5]]
+    assert ratios == sorted(ratios, reverse=True)
+    assert len(table) == 6
+
+
+def test_a_dry_run_shows_the_plan_and_writes_nothing(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "results"
+    answer = call("run", photos, "-o", output, "--detectors", "orb", "--dry-run")
+    assert answer.code == 0
+    assert "photos: 4 images, 3 pairs" in answer.out
+    assert re.search(r"combinations +24 of the 56 named", answer.out)
+    assert re.search(r"8 left out: the descriptor needs keypoints of its own family", answer.out)
+    assert re.search(r"rows +72, of which 0 are there already", answer.out)
+    assert "72 rows in 1 unit" in answer.out
+    assert not output.exists()
+
+
+def test_a_dry_run_knows_what_is_there(call: Call, photos: Path, finished: Path) -> None:
+    words = ("run", photos, "-o", finished, "--combinations", f"{COMBINATIONS},ORB-ORB-HAM-FLANN")
+    answer = call(*words, "--dry-run")
+    assert re.search(r"rows +15, of which 12 are there already", answer.out)
+
+
+def test_a_dry_run_tells_what_gray_images_rule_out(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    from PIL import Image
+
+    gray = tmp_path / "gray"
+    gray.mkdir()
+    for path in photos.iterdir():
+        Image.open(path).convert("L").save(gray / path.name)
+    words = ("run", gray, "-o", tmp_path / "results", "--dry-run")
+    answer = call(*words, "--combinations", "ORB-LUCID-HAM-BF,ORB-ORB-HAM-BF")
+    assert "ORB-LUCID-HAM-BF on 3 pairs, because LUCID needs three colour channels" in answer.out
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--combinations", "SIFT-ORB-HAM-BF"), "SIFT-ORB-HAM-BF selects nothing that can run"),
+        (("--combinations", "ORB-SOFT-HAM-BF"), "did you mean ORB-SIFT"),
+        (("--preset", "nothing"), "there is no preset 'nothing'"),
+        (("--equalize", "most"), "most"),
+        (("--pairs", "missing.txt"), "missing.txt"),
+        (("--sequences", "no*"), "no sequence is called no*"),
+        (("--timing", "late"), "'late' is not one of"),
+        (("--workers", "0"), "--workers"),
+        (("--timing", "exclusive", "--workers", "2"), "--timing shared"),
+        (("--timeout", "0"), "must be positive"),
+        (("--limit", "none"), "--limit"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(
+    call: Call, photos: Path, tmp_path: Path, words: tuple[str, ...], told: str
+) -> None:
+    answer = call("run", photos, "-o", tmp_path / "results", *words)
+    assert answer.code == 2
+    assert answer.out == ""
+    assert answer.err.startswith("error: ")
+    assert answer.err.count("\n") == 1
+    assert told in answer.err
+    assert not (tmp_path / "results").exists()
+
+
+def test_an_unknown_dataset_is_told_with_the_kinds_there_are(call: Call, tmp_path: Path) -> None:
+    answer = call("run", "oxfrod:somewhere", "-o", tmp_path / "results")
+    assert answer.code == 2
+    assert "did you mean oxford?" in answer.err
+    assert answer.err.count("\n") == 1
+
+
+def test_results_do_not_go_into_a_file_or_where_nobody_may_write(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("mine")
+    words = ("--combinations", "ORB-ORB-HAM-BF")
+    answer = call("run", photos, "-o", file, *words)
+    assert (answer.code, file.read_text()) == (2, "mine")
+    assert "is a file" in answer.err
+    if Path("/proc/self").exists():
+        answer = call("run", photos, "-o", "/proc/self/results", *words)
+        assert answer.code == 2
+        assert re.fullmatch(r"error: cannot write to /proc/self/results: .*\n", answer.err)

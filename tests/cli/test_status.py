@@ -1,0 +1,51 @@
+"""`aerocues status`: done, left, failed and left out."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+from aerocues.evaluation.results import Results
+from tests.cli.conftest import Call
+
+
+def test_a_finished_run_has_nothing_left(call: Call, finished: Path) -> None:
+    answer = call("status", finished)
+    assert answer.code == 0
+    assert answer.out.startswith("12 of 12 rows done, none left\n")
+    assert re.search(r"ok +\d+", answer.out)
+
+
+def test_what_failed_is_listed_by_reason_and_methods(call: Call, finished: Path) -> None:
+    facts = json.loads(call("status", finished, "--json").out)
+    counts = Results(finished).table()["status"].value_counts()
+    assert facts["planned"] == facts["done"] == 12
+    assert facts["left"] == 0
+    assert facts["statuses"] == dict(counts.iter_rows())
+    failed = {(row["detector"], row["descriptor"]): row for row in facts["failures"]}
+    # FREAK's pattern at the sizes of ORB's keypoints is larger than these images.
+    assert failed["ORB", "FREAK"]["status"] == "no_descriptors"
+    assert failed["ORB", "FREAK"]["rows"] == 3
+    assert re.search(r"no_descriptors +3 +ORB-FREAK", call("status", finished).out)
+
+
+def test_what_is_left_and_left_out_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "half"
+    shutil.copytree(finished, folder)
+    run = json.loads((folder / "run.json").read_text())
+    run["rows_planned"] = 20
+    run["exclusions"] = [{"combination": "ORB-LUCID-HAM-BF", "reason": "gray", "pairs": 3}]
+    (folder / "run.json").write_text(json.dumps(run))
+    answer = call("status", folder)
+    assert "12 of 20 rows done, 8 left" in answer.out
+    assert "ORB-LUCID-HAM-BF on 3 pairs: gray" in answer.out
+    assert "run the same command again" in answer.out
+
+
+def test_a_folder_without_results_is_refused(call: Call, tmp_path: Path) -> None:
+    for folder in (tmp_path, tmp_path / "missing"):
+        answer = call("status", folder)
+        assert answer.code == 2
+        assert re.fullmatch(r"error: .* is no results folder .*\n", answer.err)
