@@ -17,4 +17,4 @@ class InlineEngine:
     ) -> Generator[Finished, None, None]:
         evaluator = Evaluator(context, lambda call: None)
         for unit in units:
-            yield Finished(unit, list(evaluator.evaluate(unit)))
+            yield Finished(unit, [row for rows in evaluator.evaluate(unit) for row in rows])

@@ -44,9 +44,11 @@ def calls(draw: st.DrawFn) -> StageCall | None:
     return StageCall(stage, draw(st.integers(0, 30)), "image", "ORB", descriptor, named)
 
 
-@given(units(), calls())
-def test_splitting_never_loses_or_doubles_a_row(unit: Unit, call: StageCall | None) -> None:
-    remaining, guilty = split(unit, call)
+@given(units(), calls(), st.booleans())
+def test_splitting_never_loses_or_doubles_a_row(
+    unit: Unit, call: StageCall | None, certain: bool
+) -> None:
+    remaining, guilty = split(unit, call, certain=certain)
     parts = [*remaining, *([guilty] if guilty else [])]
     assert keys(*parts) == keys(unit)
     assert all(part.rows for part in remaining)
@@ -65,20 +67,33 @@ def test_splitting_comes_to_an_end(unit: Unit, data: st.DataObject) -> None:
             settled += keys(part)
             continue
         deaths += 1
-        remaining, guilty = split(part, data.draw(calls()))
+        remaining, guilty = split(part, data.draw(calls()), certain=data.draw(st.booleans()))
         queue += remaining
         if guilty:
             settled += keys(guilty)
     assert settled == keys(unit)
-    assert deaths <= unit.rows + 3 * len(unit.work)
+    assert deaths <= unit.rows + 2 * len(unit.work)
 
 
-def test_a_unit_of_several_pairs_is_first_cut_around_the_pair() -> None:
+def test_the_pair_in_which_a_process_died_is_tried_once_more_alone() -> None:
     unit = Unit("ORB", tuple(work(pair, COMBINATIONS[:2]) for pair in (3, 4, 5, 6)), 8.0)
-    remaining, guilty = split(unit, StageCall("detect", 4, "b", "ORB"))
+    remaining, guilty = split(unit, StageCall("detect", 4, "b", "ORB"), certain=False)
     assert guilty is None
-    assert [[w.pair for w in part.work] for part in remaining] == [[3], [4], [5, 6]]
+    assert [[w.pair for w in part.work] for part in remaining] == [[4], [3], [5, 6]]
     assert [part.cost for part in remaining] == [2, 2, 4]
+    assert all(part.alone for part in remaining)
+    again, guilty = split(remaining[0], StageCall("detect", 4, "b", "ORB"), certain=False)
+    assert not again
+    assert guilty is not None
+    assert keys(guilty) == keys(remaining[0])
+
+
+def test_a_stage_that_used_up_its_time_is_given_up_at_once() -> None:
+    unit = Unit("ORB", tuple(work(pair, COMBINATIONS[:2]) for pair in (3, 4, 5)))
+    remaining, guilty = split(unit, StageCall("detect", 4, "b", "ORB"), certain=True)
+    assert [[w.pair for w in part.work] for part in remaining] == [[3], [5]]
+    assert guilty is not None
+    assert [w.pair for w in guilty.work] == [4]
 
 
 @pytest.mark.parametrize(
@@ -101,7 +116,7 @@ def test_a_unit_of_several_pairs_is_first_cut_around_the_pair() -> None:
 def test_only_what_depends_on_the_call_is_given_up(
     call: StageCall | None, given_up: list[Combination]
 ) -> None:
-    remaining, guilty = split(Unit("ORB", (work(4, COMBINATIONS),)), call)
+    remaining, guilty = split(Unit("ORB", (work(4, COMBINATIONS),)), call, certain=True)
     assert guilty is not None
     assert list(guilty.work[0].combinations) == given_up
     left = [c for part in remaining for c in part.work[0].combinations]

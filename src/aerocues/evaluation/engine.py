@@ -12,10 +12,7 @@ from aerocues.evaluation.unit import Context, StageCall, Unit
 
 @dataclass(frozen=True)
 class Finished:
-    """A finished unit, or the finished part of one that was split.
-
-    ``cost`` is the part of the planned cost that this settles.
-    """
+    """A part of a unit that is settled, with its rows: a pair, or what had to be given up."""
 
     unit: Unit
     rows: list[Row]

@@ -52,8 +52,8 @@ class Evaluator:
         self._detectors: dict[str, DetectorStage] = {}
         self._descriptors: dict[str, DescriptorStage] = {}
 
-    def evaluate(self, unit: Unit) -> Iterator[Row]:
-        """The rows of a unit, in the order of its work.
+    def evaluate(self, unit: Unit) -> Iterator[list[Row]]:
+        """The rows of each pair of a unit, in the order of its work.
 
         An image's features are kept until the last pair of the unit that needs them.
         """
@@ -61,7 +61,7 @@ class Evaluator:
         last = {name: i for i, pair in enumerate(pairs) for name in (pair.image_1, pair.image_2)}
         cache: ImageCache = {}
         for position, (pair, work) in enumerate(zip(pairs, unit.work, strict=True)):
-            yield from self._evaluate_pair(unit.detector, pair, work, cache)
+            yield list(self._evaluate_pair(unit.detector, pair, work, cache))
             for name in {pair.image_1, pair.image_2}:
                 if last[name] == position:
                     del cache[name]

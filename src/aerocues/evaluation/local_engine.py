@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import wait
 
 from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.rows import failed_rows
 from aerocues.evaluation.unit import Context, Unit, split
 from aerocues.evaluation.worker_process import Loss, WorkerProcess
@@ -79,7 +80,7 @@ class _Pool:
             self.busy[worker] = unit
 
     def _needs_own_process(self, unit: Unit) -> bool:
-        return self._context.methods.detectors[unit.detector].unstable
+        return unit.alone or self._context.methods.detectors[unit.detector].unstable
 
     def activities(self) -> list[Activity]:
         return [worker.activity() for worker in sorted(self.busy, key=lambda w: w.number)]
@@ -91,15 +92,23 @@ class _Pool:
             if worker.pipe in ready:
                 rows = worker.receive()
                 if isinstance(rows, list):
-                    unit = self.busy.pop(worker)
-                    self._retire(worker, unit)
-                    yield Finished(unit, rows), []
+                    yield self._advance(worker, rows), []
                     continue
                 loss: Loss | None = rows
             else:
                 loss = worker.overrun(self._engine.timeout)
             if loss is not None:
                 yield self._settle(worker, loss)
+
+    def _advance(self, worker: WorkerProcess, rows: list[Row]) -> Finished:
+        """Take the rows of the next pair of a worker's unit."""
+        unit = self.busy.pop(worker)
+        done, rest = unit.parts(1)
+        if rest.work:
+            self.busy[worker] = rest
+        else:
+            self._retire(worker, unit)
+        return Finished(done, rows)
 
     def _retire(self, worker: WorkerProcess, unit: Unit) -> None:
         if self._needs_own_process(unit):
@@ -111,7 +120,7 @@ class _Pool:
     def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
         unit = self.busy.pop(worker)
         worker.stop()
-        remaining, guilty = split(unit, loss.call)
+        remaining, guilty = split(unit, loss.call, certain=loss.status != "crashed")
         if guilty is None:
             return None, remaining
         rows = failed_rows(self._context, guilty, loss.status, loss.message)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from aerocues.datasets.dataset import Dataset
 from aerocues.evaluation.protocol import MeasurementProtocol
@@ -34,15 +35,29 @@ class PairWork:
 
 @dataclass(frozen=True)
 class Unit:
-    """One detector on consecutive pairs; the features of an image are shared among them."""
+    """One detector on consecutive pairs; the features of an image are shared among them.
+
+    ``alone`` asks for a fresh process, of which nothing else can have harmed the memory. ``cost``
+    is an estimate in CPU seconds.
+    """
 
     detector: str
     work: tuple[PairWork, ...]
     cost: float = 0.0
+    alone: bool = False
 
     @property
     def rows(self) -> int:
         return sum(len(work.combinations) for work in self.work)
+
+    def parts(self, *positions: int) -> list[Unit]:
+        """The unit cut before the pairs at the given positions; parts may be empty."""
+        bounds = (0, *positions, len(self.work))
+        share = self.cost / len(self.work)
+        return [
+            replace(self, work=self.work[start:end], cost=share * (end - start))
+            for start, end in pairwise(bounds)
+        ]
 
 
 @dataclass(frozen=True)
@@ -82,31 +97,33 @@ def blamed(work: PairWork, call: StageCall | None) -> frozenset[Combination]:
     return frozenset(c for c in work.combinations if str(c) == call.combination)
 
 
-def split(unit: Unit, call: StageCall | None) -> tuple[list[Unit], Unit | None]:
-    """Divide a unit whose worker died in `call`.
+def split(unit: Unit, call: StageCall | None, *, certain: bool) -> tuple[list[Unit], Unit | None]:
+    """Divide a unit whose worker was lost in `call`.
+
+    Parameters
+    ----------
+    unit : Unit
+    call : StageCall or None
+        The call that did not return, where it is known.
+    certain : bool
+        Whether the call itself is to blame. A process that died may also have been harmed by what
+        it did before: the pair is then tried once more alone.
 
     Returns
     -------
     remaining : list of Unit
         What is to be tried again, each in a process of its own.
     guilty : Unit or None
-        What is given up: only once the unit is down to the pair in which the worker died.
+        What is given up.
     """
-    if len(unit.work) > 1:
-        position = next(
-            (i for i, work in enumerate(unit.work) if call and work.pair == call.pair), 0
-        )
-        groups = (
-            unit.work[:position],
-            unit.work[position : position + 1],
-            unit.work[position + 1 :],
-        )
-        share = unit.cost / len(unit.work)
-        return [
-            replace(unit, work=group, cost=share * len(group)) for group in groups if group
-        ], None
-    work = unit.work[0]
+    position = next((i for i, work in enumerate(unit.work) if call and work.pair == call.pair), 0)
+    before, pair, after = unit.parts(position, position + 1)
+    remaining = [replace(part, alone=True) for part in (before, after) if part.work]
+    if not (certain or (unit.alone and not remaining)):
+        return [replace(pair, alone=True), *remaining], None
+    work = pair.work[0]
     guilty = blamed(work, call)
     rest = work.only(guilty, keep=False)
-    remaining = [replace(unit, work=(rest,))] if rest.combinations else []
-    return remaining, replace(unit, work=(work.only(guilty, keep=True),))
+    if rest.combinations:
+        remaining.insert(0, replace(pair, work=(rest,), alone=True))
+    return remaining, replace(pair, work=(work.only(guilty, keep=True),))

@@ -48,9 +48,9 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
             unit = pipe.recv()
         except EOFError:
             return
-        rows = list(evaluator.evaluate(unit))
-        heartbeat.announce(None)
-        pipe.send(rows)
+        for rows in evaluator.evaluate(unit):
+            heartbeat.announce(None)
+            pipe.send(rows)
 
 
 def main() -> None:

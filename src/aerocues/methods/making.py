@@ -100,7 +100,8 @@ class ArrayDescriptor:
             raise TypeError(f"a descriptor returns Features, not {type(raw).__name__}")
         if raw.descriptors.dtype != self._dtype:
             raise TypeError(f"descriptors of {raw.descriptors.dtype}, declared as {self._dtype}")
-        return finite_features(raw.keypoints, np.ascontiguousarray(raw.descriptors))
+        contiguous: Any = np.ascontiguousarray(raw.descriptors)
+        return finite_features(raw.keypoints, contiguous)
 
 
 class ArrayMatcher:
