@@ -68,9 +68,9 @@ def exit_code(arguments: Sequence[str]) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _complain(f"{where}{error.strerror or error}; check the path, access and free space")
-    except (KeyboardInterrupt, typer.Abort):
+    except (KeyboardInterrupt, typer.Abort) as interruption:
         sys.stderr.write("interrupted\n")
-        return INTERRUPTED
+        return getattr(interruption, "exit_code", INTERRUPTED)
 
 
 def _run(arguments: Sequence[str]) -> int:

@@ -83,6 +83,8 @@ def _print_summary(found: Results, top: int) -> None:
 
     table, settings = found.table(), found.settings
     console = standard_output()
+    if table.is_empty():
+        console.print("there are no rows yet")
     print_ranking(table, top)
     versions = settings.get("versions", {})
     combinations = table.select("detector", "descriptor", "norm", "matcher").n_unique()

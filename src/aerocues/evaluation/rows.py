@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import cv2
 
 from aerocues.datasets.dataset import Pair
@@ -25,6 +27,7 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
         norm=combination.norm,
         matcher=combination.matcher,
         preset=context.preset,
+        parameters=json.dumps(context.methods.parameters(combination), sort_keys=True),
         opencv_version=cv2.__version__,
         machine=context.machine,
         seed=context.protocol.seed,

@@ -131,10 +131,6 @@ def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) ->
         "preset": context.preset,
         "protocol": asdict(context.protocol),
         "combinations": [str(combination) for combination in combinations],
-        "parameters": {
-            str(combination): context.methods.parameters(combination)
-            for combination in combinations
-        },
         "rows_planned": plan.rows_planned,
         "exclusions": [
             {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}

@@ -131,6 +131,7 @@ GROUND_TRUTH: tuple[Column, ...] = (
 
 PROVENANCE: tuple[Column, ...] = (
     _text("preset", "preset of parameters and protocol"),
+    _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
     _text("opencv_version", "version of OpenCV"),
     _text("machine", "processor that measured"),
     Column("seed", "integer", "", "seed set before every stage call"),

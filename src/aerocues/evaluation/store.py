@@ -172,7 +172,13 @@ class Store:
     def _scan(self, parts: list[Path]) -> pl.LazyFrame:
         import polars as pl
 
-        return pl.scan_parquet(parts, schema=pl.Schema(polars_schema()))
+        # Older results lack the columns that have come since.
+        return pl.scan_parquet(
+            parts,
+            schema=pl.Schema(polars_schema()),
+            missing_columns="insert",
+            extra_columns="ignore",
+        )
 
     def _collect(self, rows: pl.LazyFrame) -> pl.DataFrame:
         import polars as pl
