@@ -65,7 +65,7 @@ lint: setup ## style, types and the direction of imports
 	$(BIN)/lint-imports
 
 bench: setup ## the benchmarks of the framework itself
-	@for benchmark in benchmarks/*.py; do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
+	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
 
 tables: setup ## bring the tables of the guide up to date with the source
 	$(BIN)/python docs/tables.py

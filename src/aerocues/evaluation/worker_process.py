@@ -60,7 +60,7 @@ class WorkerProcess:
             # Whatever the parent can import, plug-ins above all; "" stands for where it is now.
             env={
                 **os.environ,
-                "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path),
+                "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path),
             },
         )
         theirs.close()
