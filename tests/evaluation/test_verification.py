@@ -139,6 +139,33 @@ def test_points_on_one_line_give_no_model_or_a_finite_one() -> None:
     assert model.matrix is None or np.isfinite(model.matrix).all()
 
 
+@pytest.mark.parametrize("shift", [9, -4])
+def test_a_pure_shift_on_whole_pixels_is_judged_and_never_an_error(shift: int) -> None:
+    """Every sample may be degenerate, at which OpenCV raises instead of finding nothing."""
+    for seed in range(25):
+        random = np.random.default_rng(seed)
+        first = random.integers(20, 200, (int(random.integers(8, 60)), 2)).astype(np.float32)
+        verdict = verify(first, first + np.float32(shift), chance=ChanceTest())
+        assert verdict.model.matrix is None or verdict.model.count > 0
+
+
+def test_opencv_finding_nothing_by_raising_is_no_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(*arguments: object) -> None:
+        raise cv2.error("(-215:Assertion failed) !model.empty() in function 'setModelParameters'")
+
+    def worse(*arguments: object) -> None:
+        raise cv2.error("(-215:Assertion failed) points.checkVector(2) >= 0")
+
+    first, second, _ = two_views(30, 0)
+    monkeypatch.setattr(cv2, "findFundamentalMat", nothing)
+    monkeypatch.setattr(cv2, "findHomography", nothing)
+    assert verify(first, second, chance=ChanceTest()).model.matrix is None
+    assert estimate_homography(first, second, magsac_parameters(SETTINGS)).matrix is None
+    monkeypatch.setattr(cv2, "findFundamentalMat", worse)
+    with pytest.raises(cv2.error):
+        verify(first, second)
+
+
 NOT_A_MODEL = [
     (None, None),
     (np.eye(3), None),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -60,12 +61,25 @@ def _checked(matrix: Any, mask: Any, count: int) -> Model:
     return Model(np.asarray(matrix, np.float64), inliers) if inliers.any() else nothing
 
 
+def _estimate(
+    find: Callable[..., Any], points_1: Float32Array, points_2: Float32Array, parameters: Any
+) -> tuple[Any, Any]:
+    """What OpenCV finds; where every sample is degenerate it raises instead of finding nothing."""
+    try:
+        matrix, mask = find(points_1, points_2, parameters)
+    except cv2.error as error:
+        if "!model.empty()" in str(error):
+            return None, None
+        raise
+    return matrix, mask
+
+
 def estimate_homography(points_1: Float32Array, points_2: Float32Array, parameters: Any) -> Model:
     """A homography from (M, 2) matched points; no matrix where there is none."""
     count = len(points_1)
     if count < MINIMUM_FOR_HOMOGRAPHY:
         return Model(None, np.zeros(count, bool))
-    matrix, mask = cv2.findHomography(points_1, points_2, parameters)
+    matrix, mask = _estimate(cv2.findHomography, points_1, points_2, parameters)
     return _checked(matrix, mask, count)
 
 
@@ -148,7 +162,9 @@ class Verifier:
     ) -> Verdict:
         count = len(points_1)
         cv2.setRNGSeed(self._protocol.seed)
-        raw, time = self._clock.time(lambda: cv2.findFundamentalMat(points_1, points_2, parameters))
+        raw, time = self._clock.time(
+            lambda: _estimate(cv2.findFundamentalMat, points_1, points_2, parameters)
+        )
         matrix, mask = raw
         model = _checked(matrix, mask, count)
         if factor is None:
@@ -165,6 +181,6 @@ class Verifier:
         for shuffle in range(chance.shuffles):
             generator = np.random.default_rng((self._protocol.seed, shuffle))
             shuffled = np.ascontiguousarray(points_2[generator.permutation(len(points_2))])
-            matrix, mask = cv2.findFundamentalMat(points_1, shuffled, parameters)
+            matrix, mask = _estimate(cv2.findFundamentalMat, points_1, shuffled, parameters)
             counts.append(_checked(matrix, mask, len(points_1)).count)
         return counts
