@@ -74,6 +74,9 @@ class WorkerProcess:
                 return
         except (EOFError, OSError):
             pass  # told below, with the worker's last words
+        except BaseException:  # an interruption: nobody else knows this process yet
+            self.stop()
+            raise
         words = self._last_words()
         self.stop()
         raise EngineError(
