@@ -69,3 +69,18 @@ def test_an_interrupted_run_says_so_and_goes_on(
     assert f"{stored} rows are there already" in err
     status = Results(output).status()
     assert (status.done, status.left) == (ROWS, 0)
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_just_starting_is_not_left_behind(photos: Path, tmp_path: Path) -> None:
+    process = begin(photos, tmp_path / "results")
+    parent = psutil.Process(process.pid)
+    while not (workers := parent.children(recursive=True)):
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert "Traceback" not in err
+    _, alive = psutil.wait_procs(workers, timeout=1)
+    assert alive == []
