@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -40,8 +41,11 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     try:
         if path.is_dir():
             raise IsADirectoryError(None, "it is a folder")
+        # Not to the file at once: polars has errors of its own for a disk that is full.
+        content = io.BytesIO()
+        WRITERS[form](table, content)
         with beside.open("wb") as file:
-            WRITERS[form](table, file)
+            file.write(content.getbuffer())
         if not is_special:
             beside.replace(path)
     except OSError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import os
 import tempfile
@@ -85,20 +86,23 @@ class Store:
         import polars as pl
 
         table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
-        target = self._parts / f"{name}.parquet"
-        self._write(target, lambda path: table.write_parquet(path, compression="zstd"))
+        # Not to the disk at once: polars has errors of its own for a disk that is full.
+        content = io.BytesIO()
+        table.write_parquet(content, compression="zstd")
+        self._write(self._parts / f"{name}.parquet", content.getvalue())
 
     def write_run(self, facts: Mapping[str, Any]) -> None:
         """Store the configuration, the versions and the machine of the latest run."""
         text = json.dumps(facts, indent=2, sort_keys=True, default=str) + "\n"
-        self._write(self.folder / RUN, lambda path: path.write_text(text, encoding="utf-8"))
+        self._write(self.folder / RUN, text.encode())
 
-    def _write(self, target: Path, write: Any) -> None:
+    def _write(self, target: Path, content: bytes) -> None:
         beside = target.with_name(f"{target.name}.{os.getpid()}.tmp")
         try:
-            write(beside)
-            with beside.open("rb") as written:
-                os.fsync(written.fileno())
+            with beside.open("wb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
             beside.replace(target)
         except OSError as error:
             with contextlib.suppress(OSError):

@@ -1,0 +1,174 @@
+"""Runs that are killed, and disks that are full or closed."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from aerocues.errors import StoreError
+from aerocues.evaluation.export import export_table
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.run import run
+from tests.evaluation.faults import workers_of
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import assert_same_rows, dataset_of, rows_of, strip, write_dataset
+
+COMBINATIONS = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,MSD-ORB-HAM-BF"
+SCRIPT = """
+import sys
+from pathlib import Path
+from aerocues.evaluation.run import Limits, run
+from tests.evaluation.scenes import dataset_of
+
+images, results, combinations = sys.argv[1:]
+dataset = dataset_of(Path(images), sorted(path.name for path in Path(images).iterdir()))
+run(dataset, combinations, results, limits=Limits(workers=2, timeout=60))
+"""
+
+
+def start(images: Path, results: Path) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [sys.executable, "-c", SCRIPT, str(images), str(results), COMBINATIONS],
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            "AEROCUES_TEST_RUN": str(images),
+        },
+        stderr=subprocess.PIPE,
+    )
+
+
+def parts_of(results: Path) -> int:
+    return len(list((results / "parts").glob("*.parquet")))
+
+
+def wait_until(done: object, seconds: float = 60) -> None:
+    assert callable(done)
+    end = time.monotonic() + seconds
+    while not done() and time.monotonic() < end:
+        time.sleep(0.02)
+    assert done()
+
+
+@pytest.mark.slow
+def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path) -> None:
+    images, results = tmp_path / "images", tmp_path / "results"
+    dataset = write_dataset(images, strip(5))
+    for kill in range(3):
+        process = start(images, results)
+        enough = parts_of(results) + 2 + kill
+        wait_until(lambda n=enough, p=process: parts_of(results) >= n or p.poll() is not None)
+        assert process.poll() is None, process.stderr and process.stderr.read()
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        wait_until(lambda: not workers_of(str(images)), 20)
+        before = parts_of(results)
+        assert before >= enough
+        rows = len(Results(results).table())
+        assert rows < 4 * 20
+    last = start(images, results)
+    assert last.wait(100) == 0, last.stderr and last.stderr.read()
+    undisturbed = run(dataset, COMBINATIONS, tmp_path / "undisturbed", engine=InlineEngine())
+    assert_same_rows(rows_of(Results(results).table()), rows_of(undisturbed.table()))
+    assert Results(results).status().left == 0
+    assert not list(results.rglob("*.tmp"))
+
+
+def mount(folder: Path, *options: str) -> None:
+    folder.mkdir()
+    command = ["mount", "-t", "tmpfs", "-o", ",".join(options), "tmpfs", str(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, check=False)
+    except OSError as error:
+        pytest.skip(f"no mount command: {error}")
+    if done.returncode:
+        pytest.skip(f"mounting is not permitted here: {done.stderr.decode().strip()}")
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of 256 KiB."""
+    folder = tmp_path / "disk"
+    mount(folder, "size=256k")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=False)
+
+
+@pytest.fixture
+def closed_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system that can only be read."""
+    folder = tmp_path / "closed"
+    mount(folder, "size=64k", "ro")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=False)
+
+
+def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(6))
+    combinations = "ORB-ORB-HAM-*,ORB-BRIEF-HAM-BF,FAST-ORB-HAM-BF"
+    ballast = small_disk / "ballast"
+    results = small_disk / "results"
+    first = run(dataset, "ORB-ORB-HAM-BF", results, engine=InlineEngine())
+    kept = rows_of(first.table())
+    free = shutil.disk_usage(small_disk).free
+    ballast.write_bytes(b"x" * max(free - 16_000, 0))
+    with pytest.raises(StoreError, match=r"cannot write .*make room.* run the same command again"):
+        run(dataset, combinations, results, engine=InlineEngine())
+    (small_disk / "more").write_bytes(b"x" * shutil.disk_usage(small_disk).free)
+    with pytest.raises(StoreError, match=r"cannot write .*No space left"):
+        export_table(first.table(), small_disk / "table.csv", "csv")
+    assert not list(results.rglob("*.tmp"))
+    with (results / "run.json").open() as file:
+        assert json.load(file)["rows_planned"] >= 5
+    ballast.unlink()
+    (small_disk / "more").unlink()
+    again = run(dataset, "ORB-ORB-HAM-BF", results, engine=InlineEngine())
+    assert {name: row for name, row in rows_of(again.table()).items() if name in kept} == kept
+    complete = run(dataset, combinations, tmp_path / "elsewhere", engine=InlineEngine())
+    resumed = run(dataset, combinations, results, engine=InlineEngine())
+    assert_same_rows(rows_of(resumed.table()), rows_of(complete.table()))
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path, closed_disk: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(2))
+    with pytest.raises(StoreError, match=r"cannot write to .*Read-only.*-o"):
+        run(dataset, "ORB-ORB-HAM-BF", closed_disk / "results", engine=InlineEngine())
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder that nobody can write")
+def test_a_folder_of_the_system_is_an_error(tmp_path: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(2))
+    with pytest.raises(StoreError, match="cannot write to /proc"):
+        run(dataset, "ORB-ORB-HAM-BF", "/proc/aerocues", engine=InlineEngine())
+
+
+def test_an_interrupted_run_resumes_where_it_was(tmp_path: Path) -> None:
+    """An engine that stops half-way, as Ctrl-C would: finished units stay."""
+    write_dataset(tmp_path / "images", strip(4))
+    dataset = dataset_of(tmp_path / "images", [f"view_{i}.png" for i in range(4)])
+
+    class Stopping(InlineEngine):
+        def run(self, *arguments: object) -> Iterator[object]:  # type: ignore[override]
+            for count, finished in enumerate(super().run(*arguments)):  # type: ignore[arg-type]
+                if count == 2:
+                    raise KeyboardInterrupt
+                yield finished
+
+    combinations = "ORB-ORB-HAM-BF,SIFT-SIFT-L2-BF,AKAZE-AKAZE-HAM-BF"
+    with pytest.raises(KeyboardInterrupt):
+        run(dataset, combinations, tmp_path / "r", engine=Stopping())  # type: ignore[arg-type]
+    done = len(Results(tmp_path / "r").table())
+    assert 0 < done < 9
+    assert Results(tmp_path / "r").status().left == 9 - done
+    resumed = run(dataset, combinations, tmp_path / "r", engine=InlineEngine())
+    undisturbed = run(dataset, combinations, tmp_path / "u", engine=InlineEngine())
+    assert_same_rows(rows_of(resumed.table()), rows_of(undisturbed.table()))
