@@ -1,0 +1,171 @@
+"""What goes wrong in a method, in a process or on the disk costs only itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.run import Limits, run
+from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import Rows, assert_same_rows, rows_of, strip, write_dataset
+from tests.methods.distribution import write_distribution
+
+# Pairs 0-1, 1-2, 2-3, 3-4 of five views; the marked one is view 2: pairs 1 and 2 suffer.
+GUILTY = "view_2.png"
+SUFFERING = {1, 2}
+LIMITS = Limits(workers=2, timeout=2, memory_limit_mb=700)
+
+OUTCOMES = {
+    "SEGFAULT": ("crashed", "SIGSEGV"),
+    "LEAVE": ("crashed", "exit code 3"),
+    "STRANGE": ("crashed", "KeyboardInterrupt"),
+    "SLEEP": ("timeout", "sat idle for 2 seconds (--timeout)"),
+    "BURN": ("timeout", "more than 2 CPU seconds (--timeout)"),
+    "ALLOCATE": ("out_of_memory", "Unable to allocate"),
+    "GROW": ("out_of_memory", "Unable to allocate"),
+    "GROW_SHARED": ("out_of_memory", "more than the limit of 700 MB (--memory-limit)"),
+    "FAIL": ("error", "ValueError: this image is not to my taste"),
+    "CV2": ("error", "OpenCV"),
+    "NONSENSE": ("error", "TypeError"),
+}
+QUICK = ["FAIL"]
+SLOW = [fault for fault in OUTCOMES if fault not in QUICK]
+
+
+@dataclass(frozen=True)
+class Arena:
+    """A dataset with a marked image, and where results go."""
+
+    dataset: Dataset
+    folder: Path
+    monkeypatch: pytest.MonkeyPatch
+
+    def healthy(self, combinations: str) -> Rows:
+        """The rows of a run in which nothing goes wrong."""
+        with self.monkeypatch.context() as patch:
+            patch.setenv(HEALTHY, "1")
+            results = run(
+                self.dataset, combinations, self.folder / "healthy", engine=InlineEngine()
+            )
+            return rows_of(results.table())
+
+    def run(self, combinations: str, *, retry_failed: bool = False) -> Results:
+        return run(
+            self.dataset,
+            combinations,
+            self.folder / "results",
+            limits=LIMITS,
+            retry_failed=retry_failed,
+        )
+
+
+@pytest.fixture
+def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Arena]:
+    write_distribution(tmp_path / "site", "faults", entry_points(list(OUTCOMES)), {})
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    pictures = strip(5)
+    mark(pictures[GUILTY])
+    monkeypatch.setenv("AEROCUES_TEST_RUN", str(tmp_path))
+    yield Arena(write_dataset(tmp_path / "images", pictures), tmp_path, monkeypatch)
+    assert not workers_of(str(tmp_path))
+
+
+def assert_only_the_guilty_failed(results: Results, healthy: Rows, fault: str) -> None:
+    """Rows of the faulty method on the marked image failed as expected; the rest is untouched."""
+    status, words = OUTCOMES[fault]
+    rows = rows_of(results.table())
+    assert rows.keys() == healthy.keys()
+    failed = {name for name, row in rows.items() if row["status"] not in ("ok", "chance")}
+    assert failed == {
+        name
+        for name, row in healthy.items()
+        if row["pair"] in SUFFERING and fault in (row["detector"], str(row["descriptor"])[2:])
+    }
+    assert failed
+    for name in failed:
+        message = str(rows[name]["message"])
+        assert rows[name]["status"] == status, message
+        assert words in message
+        assert GUILTY in message
+        assert fault in message
+    assert_same_rows(
+        {name: row for name, row in rows.items() if name not in failed},
+        {name: row for name, row in healthy.items() if name not in failed},
+    )
+
+
+def combinations_of(fault: str) -> str:
+    return f"{fault}-ORB-HAM-BF,{fault}-BRIEF-HAM-BF,ORB-D_{fault}-HAM-BF,ORB-ORB-HAM-BF"
+
+
+@pytest.mark.parametrize(
+    "fault", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)]
+)
+def test_a_fault_costs_only_itself(arena: Arena, fault: str) -> None:
+    combinations = combinations_of(fault)
+    healthy = arena.healthy(combinations)
+    results = arena.run(combinations)
+    assert_only_the_guilty_failed(results, healthy, fault)
+
+
+def test_a_crash_costs_only_its_pair(arena: Arena) -> None:
+    dataset = replace(arena.dataset, pairs=arena.dataset.pairs[:2])
+    small = replace(arena, dataset=dataset)
+    healthy = small.healthy("SEGFAULT-ORB-HAM-BF,ORB-ORB-HAM-BF")
+    results = small.run("SEGFAULT-ORB-HAM-BF,ORB-ORB-HAM-BF")
+    assert_only_the_guilty_failed(results, healthy, "SEGFAULT")
+
+
+@pytest.mark.slow
+def test_a_matcher_that_kills_its_process_costs_only_its_rows(arena: Arena) -> None:
+    combinations = "ORB-ORB-HAM-KILLER,ORB-ORB-HAM-BF"
+    healthy = arena.healthy(combinations)
+    rows = rows_of(arena.run(combinations).table())
+    for name, row in rows.items():
+        if row["matcher"] == "KILLER":
+            assert row["status"] == "crashed"
+            assert "SIGSEGV" in str(row["message"])
+            assert "match ORB-ORB-HAM-KILLER on" in str(row["message"])
+        else:
+            assert_same_rows({name: row}, {name: healthy[name]})
+
+
+@pytest.mark.slow
+def test_failed_rows_are_measured_again_on_demand(arena: Arena) -> None:
+    combinations = "SEGFAULT-ORB-HAM-BF,FAIL-ORB-HAM-BF,ORB-ORB-HAM-BF"
+    healthy = arena.healthy(combinations)
+    first = rows_of(arena.run(combinations).table())
+    assert sorted(str(r["status"]) for r in first.values() if r["status"] != "ok") == [
+        "crashed",
+        "crashed",
+        "error",
+        "error",
+    ]
+    arena.monkeypatch.setenv(HEALTHY, "1")
+    assert rows_of(arena.run(combinations).table()) == first
+    again = arena.run(combinations, retry_failed=True)
+    assert_same_rows(rows_of(again.table()), healthy)
+    assert again.status().statuses == {"ok": 12}
+
+
+@pytest.mark.slow
+def test_all_faults_at_once(arena: Arena) -> None:
+    combinations = ",".join(combinations_of(fault) for fault in OUTCOMES)
+    healthy = arena.healthy(combinations)
+    rows = rows_of(arena.run(combinations).table())
+    assert rows.keys() == healthy.keys()
+    for name, row in rows.items():
+        fault = next(
+            (f for f in OUTCOMES if f in (row["detector"], str(row["descriptor"])[2:])), ""
+        )
+        if fault and row["pair"] in SUFFERING:
+            assert row["status"] == OUTCOMES[fault][0]
+            assert GUILTY in str(row["message"])
+        else:
+            assert_same_rows({name: row}, {name: healthy[name]})
