@@ -10,7 +10,9 @@ FIND_PYTHON = for name in python3 python3.13 python3.12 python3.11; do \
 	if "$$name" -c '$(SUPPORTED)' 2>/dev/null; then echo "$$name"; break; fi; done
 
 DEMO_RESULTS := demo-results
-DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,KAZE-KAZE-L2-BF,ORB-ORB-HAM-*,ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,GFTT-BRIEF-HAM-BF,STAR-DAISY-L2-BF
+DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZE-L2-BF,ORB-ORB-HAM-*,$(\
+	)ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,AGAST-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,$(\
+	)GFTT_H-TEBLID-HAM-BF,STAR-LATCH-HAM-BF,MSER-SIFT-L2-BF
 
 # Extra arguments for pytest, for instance: make test PYTEST_ARGUMENTS="-k synthetic"
 PYTEST_ARGUMENTS :=
@@ -40,7 +42,7 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 	@touch $@
 
 demo: setup ## measure a choice of combinations on the built-in images (under 3 minutes)
-	$(BIN)/aerocues run synthetic -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+	$(BIN)/aerocues run synthetic --max-width 700 -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
 
 test: setup ## the fast tests
 	$(BIN)/pytest -n 2 -m "not slow" $(PYTEST_ARGUMENTS)
