@@ -34,6 +34,9 @@ OUTCOMES = {
     "CV2": ("error", "OpenCV"),
     "NONSENSE": ("error", "TypeError"),
 }
+# Generous: a crowded machine takes seconds to start each of the many workers.
+pytestmark = pytest.mark.timeout(600)
+
 QUICK = ["FAIL"]
 SLOW = [fault for fault in OUTCOMES if fault not in QUICK]
 
@@ -155,15 +158,14 @@ def test_failed_rows_are_measured_again_on_demand(arena: Arena) -> None:
 
 
 @pytest.mark.slow
-def test_all_faults_at_once(arena: Arena) -> None:
-    combinations = ",".join(combinations_of(fault) for fault in OUTCOMES)
+def test_several_faults_in_one_run(arena: Arena) -> None:
+    several = ("SEGFAULT", "SLEEP", "ALLOCATE")
+    combinations = ",".join(combinations_of(fault) for fault in several)
     healthy = arena.healthy(combinations)
     rows = rows_of(arena.run(combinations).table())
     assert rows.keys() == healthy.keys()
     for name, row in rows.items():
-        fault = next(
-            (f for f in OUTCOMES if f in (row["detector"], str(row["descriptor"])[2:])), ""
-        )
+        fault = next((f for f in several if f in (row["detector"], str(row["descriptor"])[2:])), "")
         if fault and row["pair"] in SUFFERING:
             assert row["status"] == OUTCOMES[fault][0]
             assert GUILTY in str(row["message"])

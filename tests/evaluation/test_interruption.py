@@ -9,7 +9,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -51,22 +52,26 @@ def parts_of(results: Path) -> int:
     return len(list((results / "parts").glob("*.parquet")))
 
 
-def wait_until(done: object, seconds: float = 60) -> None:
-    assert callable(done)
+def wait_until(done: Callable[[], bool], seconds: float = 120) -> None:
     end = time.monotonic() + seconds
     while not done() and time.monotonic() < end:
         time.sleep(0.02)
     assert done()
 
 
+def _has(results: Path, parts: int, process: subprocess.Popen[bytes]) -> bool:
+    return parts_of(results) >= parts or process.poll() is not None
+
+
 @pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path) -> None:
     images, results = tmp_path / "images", tmp_path / "results"
     dataset = write_dataset(images, strip(5))
     for kill in range(3):
         process = start(images, results)
         enough = parts_of(results) + 2 + kill
-        wait_until(lambda n=enough, p=process: parts_of(results) >= n or p.poll() is not None)
+        wait_until(partial(_has, results, enough, process))
         assert process.poll() is None, process.stderr and process.stderr.read()
         process.send_signal(signal.SIGKILL)
         process.wait()
@@ -76,7 +81,7 @@ def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path
         rows = len(Results(results).table())
         assert rows < 4 * 20
     last = start(images, results)
-    assert last.wait(100) == 0, last.stderr and last.stderr.read()
+    assert last.wait(400) == 0, last.stderr and last.stderr.read()
     undisturbed = run(dataset, COMBINATIONS, tmp_path / "undisturbed", engine=InlineEngine())
     assert_same_rows(rows_of(Results(results).table()), rows_of(undisturbed.table()))
     assert Results(results).status().left == 0

@@ -1,0 +1,115 @@
+"""On real images with ground truth: keypoints are those that ``compute`` returned."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.dataset import Dataset, Image, Pair
+from aerocues.datasets.decoding import FileSource
+from aerocues.evaluation.clock import Clock
+from aerocues.evaluation.ground_truth import transfer_errors
+from aerocues.evaluation.protocol import MeasurementProtocol
+from aerocues.evaluation.run import Limits, run
+from aerocues.evaluation.verification import Verifier
+from aerocues.methods.arrays import Features, Float32Array, Keypoints
+from aerocues.methods.combination import Combination
+from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.methods.registry import opencv_methods
+from tests.evaluation.inline import InlineEngine
+from tests.methods.pictures import textured
+
+pytestmark = pytest.mark.timeout(600)
+
+DROPPING = ("ORB-FREAK-HAM-BF", "MSD-ORB-HAM-BF", "GFTT-BRIEF-HAM-BF")
+
+
+@pytest.fixture(scope="module")
+def graf(shared_data: Path) -> Dataset:
+    return open_dataset(f"oxford:{shared_data / 'oxford'}", sequences=["graf"], limit=2)
+
+
+@pytest.mark.slow
+def test_sift_on_graf_is_right_by_the_truth(graf: Dataset, tmp_path: Path) -> None:
+    near = Dataset(graf.name, graf.images, graf.pairs[:1], graf.geometry)
+    table = run(near, "SIFT-SIFT-L2-BF", tmp_path / "r", engine=InlineEngine()).table()
+    [row] = table.to_dicts()
+    assert row["status"] == "ok"
+    assert row["gt_precision@3"] > 0.7
+    assert row["homography_error"] < 3
+    assert row["precision"] > 0.7
+    assert abs(row["precision_beyond_chance"] - row["gt_precision@3"]) < 0.15
+
+
+def both(pair: Pair, dataset: Dataset, text: str) -> tuple[list[Keypoints], list[Features]]:
+    """Keypoints before `compute` and features after it, of both images."""
+    methods, combination = opencv_methods(), Combination.parse(text)
+    detector = make_detector(methods, combination.detector)
+    descriptor = make_descriptor(methods, combination.descriptor)
+    before, after = [], []
+    for name in (pair.image_1, pair.image_2):
+        image = dataset.image(name).read().bgr
+        cv2.setRNGSeed(0)
+        before.append(detector.read(detector.call(image)))
+        cv2.setRNGSeed(0)
+        after.append(descriptor.read(descriptor.call(image, descriptor.prepare(before[-1]))))
+    return before, after
+
+
+def shares(
+    first: Float32Array, second: Float32Array, truth: NDArray[np.float64]
+) -> tuple[float, float]:
+    """Share of matches that are right by the truth, and of those that are inliers."""
+    right = float((transfer_errors(first, second, truth) <= 3).mean())
+    verifier = Verifier(MeasurementProtocol(chance=None), Clock(memory=False))
+    model = verifier.verify(first, second, np.arange(len(first))).model
+    return right, model.count / len(first)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", DROPPING)
+@pytest.mark.parametrize("position", [0, 1])
+def test_a_stale_list_of_keypoints_would_destroy_the_matches(
+    shared_data: Path, tmp_path: Path, text: str, position: int
+) -> None:
+    where = f"oxford:{shared_data / 'oxford'}"
+    graf = open_dataset(where, sequences=["graf"], limit=2, max_width=640)
+    pair = graf.pairs[position]
+    assert pair.homography is not None
+    one = Dataset(graf.name, graf.images, [pair], graf.geometry)
+    [row] = run(one, text, tmp_path / "r", engine=InlineEngine()).table().to_dicts()
+    before, after = both(pair, graf, text)
+    assert all(len(b) > len(a) for b, a in zip(before, after, strict=True))
+    matcher = make_matcher(opencv_methods(), "BF", "HAM")
+    matches = matcher.read(matcher.call(*after))
+    forth, back = matches.indices.T
+    right = shares(after[0].keypoints.xy[forth], after[1].keypoints.xy[back], pair.homography)
+    stale = shares(before[0].xy[forth], before[1].xy[back], pair.homography)
+    assert row["matches"] == len(matches)
+    assert row["gt_precision@3"] == pytest.approx(right[0])
+    assert row["precision"] == pytest.approx(right[1], abs=0.02)
+    assert right[0] > 10 * stale[0]
+    assert right[0] > 0.1 if position == 0 else right[0] > 0.02
+    if position == 0:
+        assert right[1] > 3 * stale[1]
+
+
+@pytest.mark.slow
+def test_a_hundred_megapixels_stay_within_the_limit_of_memory(tmp_path: Path) -> None:
+    tile = cv2.cvtColor(textured(1000, 1000, seed=8), cv2.COLOR_BGR2GRAY)
+    shift = np.roll(tile, (5, 9), axis=(0, 1))
+    for name, part in (("first.png", tile), ("second.png", shift)):
+        whole = np.tile(part, (10, 10))
+        cv2.imwrite(str(tmp_path / name), whole, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    images = [Image(name, FileSource(tmp_path / name)) for name in ("first.png", "second.png")]
+    dataset = Dataset("huge", images, [Pair(0, "first.png", "second.png", "huge")], "epipolar")
+    limits = Limits(workers=1, memory_limit_mb=4000)
+    table = run(dataset, "ORB-BRIEF-HAM-FLANN", tmp_path / "r", limits=limits).table()
+    [row] = table.to_dicts()
+    assert row["status"] not in ("out_of_memory", "crashed", "error", "timeout"), row["message"]
+    assert row["keypoints_1"] > 20_000
