@@ -18,6 +18,8 @@ from aerocues.methods.making import DescriptorStage, DetectorStage
 
 Result = TypeVar("Result")
 WARM_UP_SIZE = 192
+# Pixels that the widest corner detectors look at on either side.
+BORDER = 5
 
 
 class StageError(Exception):
@@ -68,6 +70,14 @@ class ImageFeatures:
     prepared: dict[type, Any] = field(default_factory=dict)
 
 
+def _inner(valid: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
+    """The valid pixels away from the border: the edge of a warp looks like corners beside it."""
+    if valid is None:
+        return None
+    kernel = np.ones((2 * BORDER + 1, 2 * BORDER + 1), np.uint8)
+    return np.asarray(cv2.erode(valid.astype(np.uint8), kernel), bool)
+
+
 def _on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> Keypoints:
     """Drop keypoints on the border that a warp leaves: they are corners of no object."""
     if valid is None or not len(keypoints):
@@ -96,7 +106,8 @@ class FeatureExtractor:
         cv2.setRNGSeed(self._seed)
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
-        return ImageFeatures(pixels, _on_valid_pixels(found, pixels.valid), time)
+        inner = Pixels(pixels.bgr, _inner(pixels.valid))
+        return ImageFeatures(inner, _on_valid_pixels(found, inner.valid), time)
 
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage

@@ -60,6 +60,10 @@ def covisible(points: Points, homography: NDArray[np.float64], target: Pixels) -
     return inside
 
 
+def _distinct(points: Points) -> NDArray[np.float64]:
+    return np.asarray(np.unique(points, axis=0), np.float64)
+
+
 def repeatability(
     points_1: Points,
     points_2: Points,
@@ -70,15 +74,17 @@ def repeatability(
     """Share of covisible keypoints found again, one to one (Mikolajczyk et al., IJCV 2005).
 
     Two keypoints are the same where each is the other's nearest and they lie at most 3 px apart
-    in image 2. The share is of the smaller of the two covisible sets.
+    in image 2. Keypoints at one position (SIFT has one for each orientation) count once. The share
+    is of the smaller of the two covisible sets.
 
     Returns
     -------
     float or None
         None where one image has no covisible keypoint.
     """
-    first = points_1[covisible(points_1, homography, pixels_2)]
-    second = points_2[covisible(points_2, _inverse(homography), pixels_1)]
+    first, second = _distinct(points_1), _distinct(points_2)
+    first = first[covisible(first, homography, pixels_2)]
+    second = second[covisible(second, _inverse(homography), pixels_1)]
     if not len(first) or not len(second):
         return None
     moved = transfer(first, homography)

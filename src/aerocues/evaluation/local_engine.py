@@ -10,7 +10,7 @@ from multiprocessing.connection import wait
 from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.rows import failed_rows
-from aerocues.evaluation.unit import Context, Unit, split
+from aerocues.evaluation.unit import Context, StageCall, Unit, split
 from aerocues.evaluation.worker_process import Loss, WorkerProcess
 
 POLL_SECONDS = 0.2
@@ -73,9 +73,10 @@ class _Pool:
         """Give every worker that has nothing to do the next unit."""
         while queue and len(self.busy) < self._engine.workers:
             unit = queue.popleft()
-            if self._needs_own_process(unit) and self._idle:
+            fresh = self._needs_own_process(unit)
+            if fresh and self._idle:
                 self._idle.pop().stop()
-            worker = self._idle.pop() if self._idle else self._fresh()
+            worker = self._idle.pop() if self._idle and not fresh else self._fresh()
             worker.begin(unit)
             self.busy[worker] = unit
 
@@ -120,11 +121,23 @@ class _Pool:
     def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
         unit = self.busy.pop(worker)
         worker.stop()
-        remaining, guilty = split(unit, loss.call, certain=loss.status != "crashed")
+        remaining, guilty = split(
+            unit, loss.call, certain=loss.status != "crashed", pairs=self._pairs_of(loss.call)
+        )
         if guilty is None:
             return None, remaining
         rows = failed_rows(self._context, guilty, loss.status, loss.message)
         return Finished(guilty, rows), remaining
+
+    def _pairs_of(self, call: StageCall | None) -> frozenset[int] | None:
+        """The pairs that need the features of one image; None where a call is about a pair."""
+        if call is None or call.stage not in ("detect", "describe"):
+            return None
+        return frozenset(
+            pair.index
+            for pair in self._context.dataset.pairs
+            if call.image in (pair.image_1, pair.image_2)
+        )
 
     def close(self) -> None:
         for worker in (*self._idle, *self.busy):

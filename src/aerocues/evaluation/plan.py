@@ -11,6 +11,7 @@ from itertools import islice
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.cost import estimate_pair_seconds
+from aerocues.evaluation.planned_rows import PlannedRow
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
 
@@ -35,12 +36,19 @@ class Exclusion:
 
 @dataclass(frozen=True)
 class Plan:
-    """Units to be done, rows that are there already, and what the images rule out."""
+    """Units to be done, all planned rows, and what the images rule out."""
 
     units: tuple[Unit, ...]
-    rows_planned: int
-    rows_present: int
+    rows: tuple[PlannedRow, ...]
     exclusions: tuple[Exclusion, ...]
+
+    @property
+    def rows_planned(self) -> int:
+        return len(self.rows)
+
+    @property
+    def rows_present(self) -> int:
+        return self.rows_planned - self.rows_left
 
     @property
     def rows_left(self) -> int:
@@ -54,13 +62,13 @@ def _row_key(
     image_keys: Mapping[str, str],
     method_keys: Mapping[Combination, str],
 ) -> str:
+    """What decides the measurement, and nothing else: no name and no number."""
     truth = None if pair.homography is None else pair.homography.tolist()
     return content_hash(
         [
             context.settings_key,
+            context.dataset.geometry,
             method_keys[combination],
-            str(combination),
-            [context.dataset.name, pair.sequence, pair.index, pair.image_1, pair.image_2],
             [image_keys[pair.image_1], image_keys[pair.image_2]],
             truth,
         ]
@@ -91,8 +99,7 @@ def _gray_reason(context: Context, combination: Combination) -> str | None:
 class _Tally:
     """What is counted while the work is divided."""
 
-    planned: int = 0
-    present: int = 0
+    rows: list[PlannedRow] = field(default_factory=list)
     ruled_out: Counter[tuple[Combination, str]] = field(default_factory=Counter)
 
 
@@ -134,11 +141,9 @@ class _Planner:
             if reason:
                 self.tally.ruled_out[combination, reason] += 1
                 continue
-            self.tally.planned += 1
             key = _row_key(self._context, pair, combination, self._image_keys, self._method_keys)
-            if self._is_present(key):
-                self.tally.present += 1
-            else:
+            self.tally.rows.append(PlannedRow(pair.index, combination, key))
+            if not self._is_present(key):
                 chosen.append(combination)
                 keys.append(key)
         return PairWork(pair.index, tuple(chosen), tuple(keys))
@@ -186,4 +191,4 @@ def make_plan(
         Exclusion(combination, reason, pairs)
         for (combination, reason), pairs in tally.ruled_out.items()
     )
-    return Plan(tuple(units), tally.planned, tally.present, exclusions)
+    return Plan(tuple(units), tuple(tally.rows), exclusions)

@@ -8,7 +8,7 @@ from typing import Literal
 Timing = Literal["exclusive", "shared"]
 
 # Raised whenever the same images and methods would give other rows: old rows are then redone.
-MEASUREMENT_VERSION = 1
+MEASUREMENT_VERSION = 2
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ class Results:
         )
         settings = self.settings
         return RunStatus(
-            planned=int(settings.get("rows_planned", len(table))),
+            planned=len(self._store.planned()),
             done=len(table),
             statuses=dict(zip(counts["status"], counts["len"], strict=True)),
             failures=failures,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import time
 
 import cv2
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.schema import empty_row
+from aerocues.evaluation.schema import PIXEL_THRESHOLDS, empty_row
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.combination import Combination
 
@@ -34,7 +35,12 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
         timing=context.protocol.timing,
         settings_key=context.settings_key,
         row_key=key,
+        measured_at=time.time(),
     )
+    if pair.homography is not None:
+        # Where no homography is found, none is right: a failed pair counts in the mean.
+        row["homography_error"] = float("inf")
+        row.update({f"homography_auc@{threshold}": 0.0 for threshold in PIXEL_THRESHOLDS})
     return row
 
 

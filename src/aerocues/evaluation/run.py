@@ -9,10 +9,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.engine import Activity, Engine, Finished
 from aerocues.evaluation.plan import Plan, content_hash, make_plan
+from aerocues.evaluation.planned_rows import planned_table
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
 from aerocues.evaluation.results import Results
 from aerocues.evaluation.store import RUN, Store
@@ -131,7 +133,6 @@ def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) ->
         "preset": context.preset,
         "protocol": asdict(context.protocol),
         "combinations": [str(combination) for combination in combinations],
-        "rows_planned": plan.rows_planned,
         "exclusions": [
             {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}
             for e in plan.exclusions
@@ -142,7 +143,7 @@ def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) ->
 
 
 def run(
-    dataset: Dataset,
+    dataset: Dataset | str,
     combinations: str | Iterable[str | Combination] | None = None,
     output: str | Path = "results",
     *,
@@ -163,8 +164,8 @@ def run(
 
     Parameters
     ----------
-    dataset : Dataset
-        From `aerocues.open_dataset`.
+    dataset : Dataset or str
+        From `aerocues.open_dataset`, or what that would be given.
     combinations : str or iterable, optional
         Globs such as ``"ORB-*-HAM-BF,AKAZE-SIFT-*"`` or combinations; all meaningful ones by
         default.
@@ -196,6 +197,8 @@ def run(
     AerocuesError
         If the selection, the images or the results folder do not allow a run.
     """
+    if isinstance(dataset, str):
+        dataset = open_dataset(dataset)
     observer = observer or Observer()
     engine = engine or local_engine(limits or Limits(), timing)
     context = _context(dataset, preset, seed, timing)
@@ -207,11 +210,14 @@ def run(
         everything=everything,
     )
     store = Store.create(Path(output))
-    present = store.present(timing, retry_failed=retry_failed)
-    plan = make_plan(context, chosen, present.__contains__, observer.hashing)
-    store.write_run(_facts(context, plan, chosen))
-    observer.planned(plan)
-    _measure(engine.run(plan.units, context, observer.working), store, observer)
+    with store.writing():
+        present = store.present(timing, retry_failed=retry_failed)
+        plan = make_plan(context, chosen, present.__contains__, observer.hashing)
+        dataset_key = content_hash([dataset.geometry, dataset.settings])
+        store.write_plan(planned_table(context, dataset_key, plan.rows))
+        store.write_run(_facts(context, plan, chosen))
+        observer.planned(plan)
+        _measure(engine.run(plan.units, context, observer.working), store, observer)
     return Results(store.folder)
 
 

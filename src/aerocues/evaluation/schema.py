@@ -54,8 +54,8 @@ OUTCOME: tuple[Column, ...] = (
 )
 
 COUNTS: tuple[Column, ...] = (
-    _count("keypoints_1", "keypoints of image 1 that have a descriptor"),
-    _count("keypoints_2", "keypoints of image 2 that have a descriptor"),
+    _count("keypoints_1", "keypoints of image 1 with a descriptor; without any, those detected"),
+    _count("keypoints_2", "keypoints of image 2 with a descriptor; without any, those detected"),
     _count("matches", "mutual matches"),
     _count("inliers", "matches that agree with the fundamental matrix"),
     Column("chance_inliers", "float", "count", "mean inliers over the shuffled matches"),
@@ -136,6 +136,7 @@ PROVENANCE: tuple[Column, ...] = (
     _text("machine", "processor that measured"),
     Column("seed", "integer", "", "seed set before every stage call"),
     _text("timing", "exclusive: a core of its own; shared: several workers at once"),
+    Column("measured_at", "float", "s", "when the row was measured, in seconds since 1970 (UTC)"),
     _text("settings_key", "hash of preset, protocol and versions: equal within one table"),
     _text("row_key", "hash of everything that decides the row"),
 )

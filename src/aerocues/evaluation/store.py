@@ -7,12 +7,13 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
 from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 RUN = "run.json"
+PLAN = "plan.parquet"
+LOCK = ".lock"
+OWN = (PARTS, RUN, PLAN, LOCK)
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
 
 
@@ -43,7 +47,7 @@ class Store:
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give -o the name of a folder")
         if folder.is_dir() and not (folder / RUN).exists() and any(folder.iterdir()):
-            left_over = [path for path in folder.iterdir() if path.name != PARTS]
+            left_over = [path for path in folder.iterdir() if path.name not in OWN]
             if left_over:
                 raise StoreError(
                     f"{folder} holds other files ({left_over[0].name}, ...); give -o a new or "
@@ -58,8 +62,25 @@ class Store:
             raise StoreError(
                 f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
             ) from error
-        store._remove_leftovers()
         return store
+
+    @contextlib.contextmanager
+    def writing(self) -> Iterator[None]:
+        """Keep other runs out of the folder, and take away what an interrupted one left half done.
+
+        Raises
+        ------
+        StoreError
+            If another process is writing to the folder.
+        """
+        with (self.folder / LOCK).open("w") as file:
+            if not _locked(file):
+                raise StoreError(
+                    f"another run is writing to {self.folder}; wait for it or give -o another "
+                    "folder"
+                )
+            self._remove_leftovers()
+            yield
 
     @classmethod
     def open(cls, folder: Path) -> Store:
@@ -113,6 +134,31 @@ class Store:
                 "and run the same command again"
             ) from error
 
+    def write_plan(self, rows: pl.DataFrame) -> None:
+        """Add the planned rows of a run; see `planned_rows.merge_plans`."""
+        content = io.BytesIO()
+        merge_plans(self._all_planned(rows), rows).write_parquet(content, compression="zstd")
+        self._write(self.folder / PLAN, content.getvalue())
+
+    def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
+        import polars as pl
+
+        if not (self.folder / PLAN).is_file():
+            return empty.clear()
+        return self._collect(pl.scan_parquet(self.folder / PLAN))
+
+    def planned(self) -> pl.DataFrame:
+        """The rows that the folder is to hold, under the settings of the latest run."""
+        import polars as pl
+
+        if not (self.folder / PLAN).is_file():
+            raise StoreError(
+                f"{self.folder / PLAN} is missing; run the same 'aerocues run' command again to "
+                "restore it"
+            )
+        settings = pl.col("settings_key") == self.run().get("settings_key")
+        return self._collect(pl.scan_parquet(self.folder / PLAN).filter(settings))
+
     def run(self) -> dict[str, Any]:
         """What `write_run` stored last."""
         try:
@@ -127,10 +173,8 @@ class Store:
         return content
 
     def parts(self) -> list[Path]:
-        """The finished parts, the oldest first."""
-        return sorted(
-            self._parts.glob("*.parquet"), key=lambda path: (path.stat().st_mtime_ns, path.name)
-        )
+        """The finished parts."""
+        return sorted(self._parts.glob("*.parquet"))
 
     def present(self, timing: str, *, retry_failed: bool) -> frozenset[str]:
         """Keys of the rows that need not be measured again.
@@ -150,27 +194,30 @@ class Store:
         return frozenset(self._collect(rows)["row_key"].to_list())
 
     def table(self) -> pl.DataFrame:
-        """The rows that belong to the settings of the latest run, each once, in order.
+        """The measured ones among the planned rows, each once, in order.
 
-        Where a row was measured again, the later one counts; exclusive times come before shared.
+        Where a row was measured more than once, one that did not fail counts before one that did,
+        exclusive times before shared ones, and then the latest.
         """
         import polars as pl
 
-        parts = self.parts()
         schema = polars_schema()
+        parts = self.parts()
         if not parts:
             return pl.DataFrame(schema=schema)
-        identity = ["dataset", "pair", "image_1", "image_2"]
-        methods = ["detector", "descriptor", "norm", "matcher"]
-        rows = (
+        planned = self.planned().select(*IDENTITY_NAMES, "row_key").lazy()
+        measured = (
             self._scan(parts)
-            .with_row_index("written")
-            .filter(pl.col("settings_key") == self.run().get("settings_key"))
-            .sort(pl.col("timing") == "exclusive", "written")
-            .unique([*identity, *methods], keep="last")
-            .sort(*identity, *methods)
-            .select(list(schema))
+            .drop(IDENTITY_NAMES)
+            .sort(
+                ~pl.col("status").is_in(RETRIED),
+                pl.col("timing") == "exclusive",
+                "measured_at",
+                nulls_last=False,
+            )
+            .unique("row_key", keep="last", maintain_order=True)
         )
+        rows = planned.join(measured, on="row_key").select(list(schema)).sort(IDENTITY_NAMES)
         return self._collect(rows)
 
     def _scan(self, parts: list[Path]) -> pl.LazyFrame:
@@ -194,3 +241,16 @@ class Store:
                 f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
                 "remove the damaged part and run the same command again"
             ) from error
+
+
+def _locked(file: IO[str]) -> bool:
+    """Whether the lock could be had; it goes with the file or the process."""
+    try:
+        import fcntl
+    except ImportError:
+        return True  # no such locks on this system
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

@@ -88,16 +88,20 @@ class Context:
     machine: str
 
 
-def blamed(work: PairWork, call: StageCall | None) -> frozenset[Combination]:
-    """The combinations of a pair that cannot be had because `call` did not return."""
-    if call is None or call.pair != work.pair or call.stage not in ("describe", "match", "verify"):
+def _blamed(work: PairWork, call: StageCall, pairs: frozenset[int]) -> frozenset[Combination]:
+    """The combinations of a pair that cannot be had because `call` does not return."""
+    if work.pair not in pairs:
+        return frozenset()
+    if call.stage == "detect":
         return frozenset(work.combinations)
     if call.stage == "describe":
         return frozenset(c for c in work.combinations if c.descriptor == call.descriptor)
     return frozenset(c for c in work.combinations if str(c) == call.combination)
 
 
-def split(unit: Unit, call: StageCall | None, *, certain: bool) -> tuple[list[Unit], Unit | None]:
+def split(
+    unit: Unit, call: StageCall | None, *, certain: bool, pairs: frozenset[int] | None = None
+) -> tuple[list[Unit], Unit | None]:
     """Divide a unit whose worker was lost in `call`.
 
     Parameters
@@ -108,6 +112,8 @@ def split(unit: Unit, call: StageCall | None, *, certain: bool) -> tuple[list[Un
     certain : bool
         Whether the call itself is to blame. A process that died may also have been harmed by what
         it did before: the pair is then tried once more alone.
+    pairs : frozenset of int, optional
+        The pairs that need the result of the call: those of its image. Only its own by default.
 
     Returns
     -------
@@ -118,12 +124,18 @@ def split(unit: Unit, call: StageCall | None, *, certain: bool) -> tuple[list[Un
     """
     position = next((i for i, work in enumerate(unit.work) if call and work.pair == call.pair), 0)
     before, pair, after = unit.parts(position, position + 1)
-    remaining = [replace(part, alone=True) for part in (before, after) if part.work]
-    if not (certain or (unit.alone and not remaining)):
-        return [replace(pair, alone=True), *remaining], None
-    work = pair.work[0]
-    guilty = blamed(work, call)
-    rest = work.only(guilty, keep=False)
-    if rest.combinations:
-        remaining.insert(0, replace(pair, work=(rest,), alone=True))
-    return remaining, replace(pair, work=(work.only(guilty, keep=True),))
+    if not (certain or (unit.alone and len(unit.work) == 1)):
+        others = [replace(part, alone=True) for part in (before, after) if part.work]
+        return [replace(pair, alone=True), *others], None
+    lost: dict[int, frozenset[Combination]] = {}
+    if call is not None:
+        needing = pairs or frozenset({call.pair})
+        lost = {work.pair: _blamed(work, call, needing) for work in unit.work}
+    if not any(lost.values()):
+        lost = {pair.work[0].pair: frozenset(pair.work[0].combinations)}
+    nothing: frozenset[Combination] = frozenset()
+    guilty = [work.only(lost.get(work.pair, nothing), keep=True) for work in unit.work]
+    innocent = [work.only(lost.get(work.pair, nothing), keep=False) for work in unit.work]
+    left = tuple(work for work in innocent if work.combinations)
+    remaining = [replace(unit, work=left, alone=True)] if left else []
+    return remaining, replace(unit, work=tuple(work for work in guilty if work.combinations))

@@ -30,7 +30,7 @@ class Model:
         return int(self.inliers.sum())
 
 
-def magsac_parameters(settings: Verification, *, guided: bool = False) -> Any:
+def magsac_parameters(settings: Verification, *, guided: bool = False, seed: int = 0) -> Any:
     """OpenCV's USAC parameters that equal ``USAC_MAGSAC`` at the default settings.
 
     With `guided`, samples are drawn from the first matches first (PROSAC).
@@ -44,7 +44,7 @@ def magsac_parameters(settings: Verification, *, guided: bool = False) -> Any:
     parameters.loMethod = cv2.LOCAL_OPTIM_INNER_LO
     parameters.loIterations = 10
     parameters.loSampleSize = 50
-    parameters.randomGeneratorState = 0
+    parameters.randomGeneratorState = seed
     parameters.isParallel = False
     return parameters
 
@@ -115,8 +115,8 @@ class Verifier:
     def __init__(self, protocol: MeasurementProtocol, clock: Clock) -> None:
         self._protocol = protocol
         self._clock = clock
-        self.uniform = magsac_parameters(protocol.verification)
-        self.guided = magsac_parameters(protocol.verification, guided=True)
+        self.uniform = magsac_parameters(protocol.verification, seed=protocol.seed)
+        self.guided = magsac_parameters(protocol.verification, guided=True, seed=protocol.seed)
 
     def verify(self, points_1: Float32Array, points_2: Float32Array, order: IndexArray) -> Verdict:
         """Estimate and judge a fundamental matrix.

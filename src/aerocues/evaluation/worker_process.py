@@ -56,6 +56,7 @@ class WorkerProcess:
             [sys.executable, "-m", "aerocues.evaluation.worker", *arguments],
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
+            stdout=self._errors,
             stderr=self._errors,
             # Whatever the parent can import, plug-ins above all; "" stands for where it is now.
             env={

@@ -11,6 +11,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
 from aerocues.methods.matchers import MATCHERS, NORMS, MatcherRow, NormRow
+from aerocues.methods.parameters import OPENCV
 from aerocues.methods.presets import Preset
 
 
@@ -55,7 +56,7 @@ class Methods:
             "descriptor": [descriptor.origin, descriptor.factory, dict(descriptor.parameters)],
             "matcher": [
                 matcher.origin,
-                matcher.factory or matcher.name,
+                matcher.name if matcher.origin == OPENCV else matcher.factory,
                 dict(matcher.parameters.get(combination.norm, {})),
             ],
             "norm": combination.norm,
