@@ -88,3 +88,14 @@ def test_sequences_are_globs() -> None:
     assert {p.sequence for p in dataset.pairs} == {"scale", "intensity"}
     with pytest.raises(DatasetError, match="there are: rotation, scale, intensity"):
         open_dataset("synthetic", sequences=["tilt"])
+
+
+def test_sequences_may_be_one_text_with_commas() -> None:
+    for text in ("scale", "SCALE, int*", "scale,,intensity,"):
+        names = [name.strip() for name in text.split(",") if name]
+        expected = open_dataset("synthetic", sequences=names)
+        dataset = open_dataset("synthetic", sequences=text)
+        assert [p.index for p in dataset.pairs] == [p.index for p in expected.pairs]
+        assert len(dataset.pairs) < 20
+    with pytest.raises(DatasetError, match="no sequence is called tilt, turn; there are"):
+        open_dataset("synthetic", sequences="tilt,turn")

@@ -13,6 +13,8 @@ from PIL import Image as PillowImage
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.folder import natural_key
 from aerocues.errors import DatasetError
+from aerocues.evaluation.run import run
+from tests.evaluation.inline import InlineEngine
 
 
 def test_images_come_in_natural_order_and_nothing_else(image_folder: Path) -> None:
@@ -99,6 +101,38 @@ def test_projects(tmp_path: Path, image_folder: Path) -> None:
         open_dataset(f"uav:{tmp_path}")
     with pytest.raises(DatasetError, match="it holds images itself"):
         open_dataset(f"uav:{image_folder}")
+
+
+def test_a_pairs_file_names_images_of_all_projects(tmp_path: Path, image_folder: Path) -> None:
+    shutil.copytree(image_folder, tmp_path / "village")
+    file = tmp_path / "pairs.txt"
+    file.write_text(
+        "village/img10.png village/img1.JPG\n"
+        "scene/img1.JPG scene/img2.png\n"
+        "village/img2.png scene/img2.png\n"
+    )
+    dataset = open_dataset(f"uav:{tmp_path}", pairs=str(file))
+    assert [(p.index, p.sequence, p.image_1, p.image_2) for p in dataset.pairs] == [
+        (0, "village", "village/img10.png", "village/img1.JPG"),
+        (1, "scene", "scene/img1.JPG", "scene/img2.png"),
+        (2, "village", "village/img2.png", "scene/img2.png"),
+    ]
+    file.write_text("village/img10.png village/img1.JPG\nvillage/img3.png village/img1.JPG\n")
+    with pytest.raises(DatasetError, match=r"1 bad line: line 2: no image 'village/img3\.png'"):
+        open_dataset(f"uav:{tmp_path}", pairs=str(file))
+
+
+def test_an_empty_file_is_an_error_of_its_own_pairs(tmp_path: Path, image_folder: Path) -> None:
+    (image_folder / "img2.png").write_bytes(b"")
+    dataset = open_dataset(str(image_folder), pairs="exhaustive", max_width=40)
+    rows = run(
+        dataset, "ORB-ORB-HAM-BF,ORB-LUCID-HAM-BF", tmp_path / "results", engine=InlineEngine()
+    ).table()
+    assert len(rows) == 6
+    for row in rows.iter_rows(named=True):
+        broken = "img2.png" in (row["image_1"], row["image_2"])
+        assert (row["status"] == "error") == broken
+        assert ("img2.png is not an image" in (row["message"] or "")) == broken
 
 
 def test_gps_pairs_from_exif(tmp_path: Path) -> None:

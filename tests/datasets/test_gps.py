@@ -35,14 +35,34 @@ def test_positions_that_make_no_sense_are_none(change: dict[int, object]) -> Non
     assert position_from_tags({**NORTH_EAST, **change}) is None
 
 
-def test_exif_round_trip(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["a.jpg", "a.tif", "a.png", "a.webp"])
+def test_every_format_with_exif_gives_its_position(tmp_path: Path, name: str) -> None:
     exif = PillowImage.Exif()
     exif[0x8825] = {**NORTH_EAST, 5: b"\x00", 6: 120.25}
-    PillowImage.new("RGB", (32, 32)).save(tmp_path / "a.jpg", exif=exif)
-    position = read_gps(tmp_path / "a.jpg")
+    PillowImage.new("RGB", (32, 32)).save(tmp_path / name, exif=exif.tobytes())
+    position = read_gps(tmp_path / name)
     assert position is not None
     assert (position.latitude, position.longitude) == pytest.approx((46.51, 9.25))
     assert position.altitude == 120.25
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")  # Pillow's, on what it skips
+@pytest.mark.parametrize("name", ["a.jpg", "a.tif"])
+def test_broken_exif_is_no_position_and_no_error(tmp_path: Path, name: str) -> None:
+    exif = PillowImage.Exif()
+    exif[0x8825] = NORTH_EAST
+    PillowImage.new("RGB", (8, 8)).save(tmp_path / name, exif=exif.tobytes())
+    whole = (tmp_path / name).read_bytes()
+    generator = np.random.default_rng(1)
+    for end in range(0, len(whole), 7):
+        (tmp_path / name).write_bytes(whole[:end])
+        read_gps(tmp_path / name)
+    for _ in range(300):
+        damaged = bytearray(whole)
+        for place in generator.integers(0, len(whole), 4):
+            damaged[place] = generator.integers(0, 256)
+        (tmp_path / name).write_bytes(damaged)
+        read_gps(tmp_path / name)
 
 
 def test_no_position(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
 from aerocues.datasets.fitting import fitted_size, scale_matrix
 from aerocues.datasets.homography_sequences import read_homography
-from aerocues.errors import DatasetError
+from aerocues.errors import DatasetError, ImageError
 
 SHIFT = "1 0 5\n0 1 -3\n0 0 1\n"
 
@@ -55,6 +55,22 @@ def test_one_sequence_alone_is_a_dataset_too(oxford: Path) -> None:
     dataset = open_dataset(f"oxford:{oxford / 'graf'}")
     assert {p.sequence for p in dataset.pairs} == {"graf"}
     assert dataset.images[0].name == "graf/img1.ppm"
+
+
+def test_an_image_without_a_header_leaves_the_others_as_they_are(oxford: Path) -> None:
+    whole = open_dataset(f"oxford:{oxford}", max_width=40)
+    (oxford / "graf" / "img2.ppm").write_bytes(b"")
+    dataset = open_dataset(f"oxford:{oxford}", max_width=40)
+    assert len(dataset.pairs) == 4
+    broken = dataset.image("graf/img2.ppm")
+    assert not broken.source.is_gray()
+    with pytest.raises(ImageError, match=r"img2\.ppm"):
+        broken.read()
+    for index in (0, 1, 3):
+        after, before = dataset.pairs[index].homography, whole.pairs[index].homography
+        assert after is not None
+        assert before is not None
+        assert after.tolist() == before.tolist()
 
 
 def test_hpatches(tmp_path: Path, picture: NDArray[np.uint8]) -> None:

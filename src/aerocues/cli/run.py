@@ -101,7 +101,7 @@ def run(
             max_width=max_width,
             equalize=equalize,
             limit=limit,
-            sequences=sequences.split(",") if sequences else None,
+            sequences=sequences,
         )
         arguments: dict[str, Any] = {
             "dataset": images,

@@ -184,7 +184,7 @@ def open_dataset(
     max_width: int | None = None,
     equalize: str = "none",
     limit: int | None = None,
-    sequences: Sequence[str] | None = None,
+    sequences: str | Sequence[str] | None = None,
 ) -> Dataset:
     """Open a dataset by its text form.
 
@@ -202,13 +202,14 @@ def open_dataset(
         ``none``, ``histogram`` or ``clahe``.
     limit : int, optional
         Keep the first pairs only.
-    sequences : sequence of str, optional
-        Keep the sequences that match one of these names or globs, in any case.
+    sequences : str or sequence of str, optional
+        Keep the sequences that match one of these names or globs, in any case; a text is split at
+        its commas.
 
     Returns
     -------
     Dataset
-        Without the images that no pair uses; the pairs that are left are numbered from 0.
+        Without the images that no pair uses; the pairs that are left keep their numbers.
 
     Raises
     ------
@@ -242,14 +243,16 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
     raise DatasetError(f"{spec} is neither a kind of dataset{meant} nor a folder; use {forms}")
 
 
-def _restricted(dataset: Dataset, limit: int | None, sequences: Sequence[str] | None) -> Dataset:
+def _restricted(
+    dataset: Dataset, limit: int | None, sequences: str | Sequence[str] | None
+) -> Dataset:
     kept = list(dataset.pairs)
-    if sequences:
-        globs = [glob.strip().lower() for glob in sequences]
+    names = sequences.split(",") if isinstance(sequences, str) else sequences
+    if globs := [name.strip().lower() for name in names or () if name.strip()]:
         kept = [p for p in kept if any(fnmatchcase(p.sequence.lower(), glob) for glob in globs)]
         if not kept:
             have = ", ".join(dict.fromkeys(pair.sequence for pair in dataset.pairs))
-            raise DatasetError(f"no sequence is called {', '.join(sequences)}; there are: {have}")
+            raise DatasetError(f"no sequence is called {', '.join(globs)}; there are: {have}")
     kept = kept[:limit]
     used = {name for pair in kept for name in (pair.image_1, pair.image_2)}
     images = [image for image in dataset.images if image.name in used]

@@ -45,7 +45,7 @@ class ImageSource(Protocol):
         """Hexadecimal hash of the content and of everything that changes the pixels."""
 
     def is_gray(self) -> bool:
-        """Whether the source has a single channel (read from its header, not its pixels)."""
+        """Whether the source has a single channel, by its header; False where that is broken."""
 
 
 @dataclass(frozen=True)

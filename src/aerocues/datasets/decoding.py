@@ -103,8 +103,14 @@ class FileSource:
         return read_header(self.path, str(self.path)).size
 
     def is_gray(self) -> bool:
-        """Whether the file has a single channel; ImageError if the header cannot be read."""
-        return read_header(self.path, str(self.path)).gray
+        """Whether the file has a single channel; False if the header cannot be read.
+
+        A broken file is an error of its pairs, which `read` tells, and not one of the dataset.
+        """
+        try:
+            return read_header(self.path, str(self.path)).gray
+        except ImageError:
+            return False
 
     def content_key(self) -> str:
         """Hash of the bytes of the file and of the settings; ImageError if it cannot be read."""

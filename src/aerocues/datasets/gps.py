@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import GpsPosition
-from aerocues.datasets.header import read_exif
+from aerocues.datasets.header import read_exif_directory
 from aerocues.errors import ImageError
 
 _GPS_DIRECTORY = 0x8825
@@ -27,10 +27,8 @@ def read_gps(path: Path) -> GpsPosition | None:
     Latitude and longitude both exactly 0 mean that the receiver had no fix.
     """
     try:
-        tags = read_exif(path).get_ifd(_GPS_DIRECTORY)
+        tags = read_exif_directory(path, _GPS_DIRECTORY)
     except ImageError:
-        return None
-    except (SyntaxError, ValueError, KeyError, TypeError):  # broken EXIF
         return None
     return position_from_tags(tags)
 

@@ -79,9 +79,17 @@ def read_header(file: Path | bytes, name: str) -> Header:
     return _read(file, name, _parse)
 
 
-def read_exif(file: Path) -> Any:
-    """The EXIF data of an image file, as Pillow's mapping; ImageError as in `read_header`."""
-    return _read(file, str(file), lambda stream: _exif(_open(stream)[1]))
+def read_exif_directory(file: Path, directory: int) -> dict[int, Any]:
+    """The tags of one directory in the EXIF data of an image file; empty where there is none.
+
+    Raises ImageError as `read_header` does, and where the EXIF data are broken.
+    """
+
+    def parse(stream: IO[bytes]) -> dict[int, Any]:
+        # Here and not later: that of TIFF is read from the file when it is asked for.
+        return dict(_exif(_open(stream)[1]).get_ifd(directory))
+
+    return _read(file, str(file), parse)
 
 
 _Result = TypeVar("_Result")

@@ -14,7 +14,7 @@ from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.fitting import fitted_size, scale_matrix
 from aerocues.datasets.folder import image_paths, subfolders
 from aerocues.datasets.options import Options
-from aerocues.errors import DatasetError
+from aerocues.errors import DatasetError, ImageError
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,10 @@ def _scale(image: Image) -> NDArray[np.float64]:
     source = image.source
     if not isinstance(source, FileSource) or source.max_width is None:
         return np.eye(3)
-    original = source.original_size()
+    try:
+        original = source.original_size()
+    except ImageError:  # an error of the pairs with this image, told when it is read
+        return np.eye(3)
     return scale_matrix(original, fitted_size(original, source.max_width))
 
 
