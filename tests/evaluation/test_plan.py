@@ -112,6 +112,16 @@ def test_timing_and_machine_do_not_change_keys(views: Dataset) -> None:
     assert named_keys(plan_of(replace(exclusive, machine="another"))) == shared
 
 
+def test_names_and_numbers_do_not_change_keys(tmp_path: Path) -> None:
+    pictures = strip(3)
+    first = write_dataset(tmp_path / "one", pictures)
+    renamed = {f"renamed_{name}": picture for name, picture in pictures.items()}
+    second = write_dataset(tmp_path / "two", renamed, name="another")
+    pairs = [replace(pair, index=pair.index + 7) for pair in second.pairs]
+    moved = replace(second, pairs=pairs)
+    assert keys(plan_of(context_of(first))) == keys(plan_of(context_of(moved)))
+
+
 def test_a_seed_or_a_protocol_changes_every_key(views: Dataset) -> None:
     before = keys(plan_of(context_of(views)))
     for protocol in (MeasurementProtocol(seed=1), MeasurementProtocol(chance=None)):

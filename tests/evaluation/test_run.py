@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def test_views_of_a_plane_are_measured_with_the_truth(tmp_path: Path) -> None:
         assert row["peak_memory_mb"] is None
     assert table["descriptor_bytes"].unique().sort().to_list() == [16, 32, 512]
     assert results.status().left == 0
-    assert results.settings["rows_planned"] == 6
+    assert results.status().planned == 6
     assert len(results.settings["combinations"]) == 3
 
 
@@ -158,8 +159,9 @@ def test_images_without_content_end_in_a_status(tmp_path: Path) -> None:
     assert statuses(2) <= {"no_keypoints", "error"}
     assert statuses(3) <= {"chance", "too_few_matches", "no_model"}
     assert "chance" in statuses(3)
-    assert statuses(6) == {"ok"}
-    assert of[6, "SIFT", "BF"]["precision"] == 1
+    # Nothing moves between an image and itself: any matrix fits, or none.
+    assert statuses(6) <= {"ok", "no_model"}
+    assert of[6, "SIFT", "BF"]["matches"] == of[6, "SIFT", "BF"]["keypoints_1"]
     for pair in (5, 7):
         assert statuses(pair) == {"error"}
     assert statuses(4) <= {"ok", "chance"}
@@ -243,7 +245,8 @@ def test_plug_ins_run_end_to_end(
     assert len(table) == 6 * 3
     for row in table.to_dicts():
         assert row["status"] == "ok", (row["detector"], row["message"])
-    parameters = results.settings["parameters"]["CORNERS-PATCHES-L2-MUTUAL"]
+    of = {row["descriptor"]: row for row in table.to_dicts() if row["detector"] == "CORNERS"}
+    parameters = json.loads(of["PATCHES"]["parameters"])
     assert parameters["detector"] == ["feature-arena 0.3", "arena.methods:Corners", {"step": 1}]
     with pytest.raises(SelectionError, match="package_that_nobody_has"):
         run(views, "NEEDY-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())

@@ -5,21 +5,24 @@ import os
 from pathlib import Path
 from typing import Any
 
+import polars as pl
 import pytest
 
 from aerocues.errors import StoreError
+from aerocues.evaluation.planned_rows import IDENTITY_NAMES
 from aerocues.evaluation.results import Results
-from aerocues.evaluation.schema import COLUMNS, empty_row
+from aerocues.evaluation.schema import COLUMNS, empty_row, polars_schema
 from aerocues.evaluation.store import Store
 
 
 def row(number: int, **values: Any) -> dict[str, Any]:
+    methods = "-".join(values.get(name, "ORB") for name in ("detector", "descriptor"))
     return {
         **empty_row(),
         "dataset": "d",
         "sequence": "s",
         "pair": number,
-        "image_1": "a",
+        "image_1": f"a{number}",
         "image_2": "b",
         "detector": "ORB",
         "descriptor": "ORB",
@@ -28,22 +31,29 @@ def row(number: int, **values: Any) -> dict[str, Any]:
         "status": "ok",
         "timing": "shared",
         "settings_key": "now",
-        "row_key": f"key-{number}",
+        "row_key": f"key-{number}-{methods}",
+        "measured_at": 1.0,
         **values,
     }
 
 
+def planned(rows: list[dict[str, Any]], dataset_key: str = "full size") -> pl.DataFrame:
+    """The plan of a run that is to measure `rows`."""
+    named = [{name: row[name] for name in (*IDENTITY_NAMES, "row_key")} for row in rows]
+    schema = {name: polars_schema()[name] for name in (*IDENTITY_NAMES, "row_key")}
+    return pl.DataFrame(named, schema=schema).with_columns(
+        pl.lit(rows[0]["settings_key"]).alias("settings_key"),
+        pl.lit(dataset_key).alias("dataset_key"),
+    )
+
+
 @pytest.fixture
 def store(tmp_path: Path) -> Store:
+    """A folder that is to hold the rows of pairs 1 to 9."""
     made = Store.create(tmp_path / "results")
-    made.write_run({"settings_key": "now", "rows_planned": 9})
+    made.write_plan(planned([row(number) for number in range(1, 10)]))
+    made.write_run({"settings_key": "now"})
     return made
-
-
-def write(store: Store, name: str, rows: list[dict[str, Any]], when: int) -> None:
-    """Store rows as if at a certain second."""
-    store.write_rows(name, rows)
-    os.utime(store.folder / "parts" / f"{name}.parquet", (when, when))
 
 
 def test_rows_come_back_with_their_types(store: Store) -> None:
@@ -55,47 +65,101 @@ def test_rows_come_back_with_their_types(store: Store) -> None:
 
 
 def test_rows_come_in_a_fixed_order_whenever_they_were_written(store: Store) -> None:
-    write(store, "z", [row(3), row(1)], 100)
-    write(store, "a", [row(2), row(1, detector="AKAZE")], 200)
+    other = row(1, detector="AKAZE", row_key="key-1a")
+    store.write_plan(planned([other]))
+    store.write_rows("z", [row(3), row(1)])
+    store.write_rows("a", [row(2), other])
     order = [(r["pair"], r["detector"]) for r in store.table().to_dicts()]
     assert order == [(1, "AKAZE"), (1, "ORB"), (2, "ORB"), (3, "ORB")]
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("b", "a")])
 def test_the_newest_row_wins(store: Store, names: tuple[str, str]) -> None:
-    write(store, names[0], [row(1, status="crashed"), row(2)], 100)
-    write(store, names[1], [row(1, matches=5)], 200)
+    store.write_rows(names[0], [row(1, matches=4, measured_at=100.0), row(2)])
+    store.write_rows(names[1], [row(1, matches=5, measured_at=200.0)])
     got = store.table().to_dicts()
     assert [(r["pair"], r["status"], r["matches"]) for r in got] == [(1, "ok", 5), (2, "ok", None)]
 
 
+@pytest.mark.parametrize("status", ["crashed", "timeout", "error", "out_of_memory"])
+def test_a_failure_never_hides_a_result(store: Store, status: str) -> None:
+    store.write_rows("a", [row(1, measured_at=100.0)])
+    store.write_rows("b", [row(1, status=status, measured_at=200.0, timing="exclusive")])
+    store.write_rows("c", [row(2, status=status, measured_at=100.0)])
+    store.write_rows("d", [row(2, measured_at=200.0)])
+    assert store.table()["status"].to_list() == ["ok", "ok"]
+
+
 @pytest.mark.parametrize("exclusive_first", [True, False])
 def test_exclusive_times_come_before_shared_ones(store: Store, exclusive_first: bool) -> None:
-    times = (100, 200) if exclusive_first else (200, 100)
-    write(store, "a", [row(1, timing="exclusive", match_seconds=1.0)], times[0])
-    write(store, "b", [row(1, timing="shared", match_seconds=2.0)], times[1])
+    times = (100.0, 200.0) if exclusive_first else (200.0, 100.0)
+    store.write_rows("a", [row(1, timing="exclusive", match_seconds=1.0, measured_at=times[0])])
+    store.write_rows("b", [row(1, timing="shared", match_seconds=2.0, measured_at=times[1])])
     [got] = store.table().to_dicts()
     assert (got["timing"], got["match_seconds"]) == ("exclusive", 1.0)
 
 
 def test_rows_of_other_settings_are_left_out(store: Store) -> None:
-    write(
-        store, "old", [row(1, settings_key="before", matches=1), row(2, settings_key="before")], 1
-    )
-    write(store, "new", [row(1, matches=2)], 2)
-    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 2)]
+    before = [row(n, settings_key="before", row_key=f"old-{n}", dataset="e") for n in (1, 2)]
+    store.write_plan(planned(before))
+    store.write_rows("old", before)
+    store.write_rows("new", [row(1, matches=2)])
+    assert [(r["dataset"], r["pair"]) for r in store.table().to_dicts()] == [("d", 1)]
     store.write_run({"settings_key": "before"})
-    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 1), (2, None)]
+    table = store.table().to_dicts()
+    assert [(r["dataset"], r["pair"]) for r in table] == [("e", 1), ("e", 2)]
+
+
+def test_a_dataset_read_in_another_way_replaces_itself(store: Store) -> None:
+    store.write_rows("wide", [row(1, matches=1), row(2, matches=1)])
+    small = row(1, matches=2, row_key="small")
+    store.write_plan(planned([small], "500 px wide"))
+    store.write_rows("small", [small])
+    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 2)]
+    store.write_plan(planned([row(1), row(2)]))
+    assert [(r["pair"], r["matches"]) for r in store.table().to_dicts()] == [(1, 1), (2, 1)]
+
+
+def test_a_folder_is_filled_part_by_part(store: Store) -> None:
+    store.write_plan(planned([row(1, descriptor="BRISK")]))
+    more = row(7, image_1="a", image_2="c", row_key="more")
+    store.write_plan(planned([more]))
+    assert len(store.planned()) == 11
+
+
+def test_a_pair_that_got_another_number_is_not_counted_twice(tmp_path: Path) -> None:
+    store = Store.create(tmp_path / "results")
+    store.write_run({"settings_key": "now"})
+    store.write_plan(planned([row(0), row(0, descriptor="BRISK")]))
+    moved = row(5, image_1="a0", row_key=row(0)["row_key"])
+    store.write_plan(planned([moved]))
+    store.write_rows("a", [row(0, matches=4), row(0, descriptor="BRISK", matches=6)])
+    got = store.table().select("pair", "descriptor", "matches").rows()
+    assert got == [(5, "BRISK", 6), (5, "ORB", 4)]
+
+
+def test_one_run_at_a_time_writes(store: Store) -> None:
+    with store.writing(), pytest.raises(StoreError, match="another run is writing"):
+        Store.create(store.folder).writing().__enter__()
+    with Store.create(store.folder).writing():
+        store.write_rows("one", [row(1)])
+
+
+def test_a_missing_plan_is_an_error_with_the_next_step(store: Store) -> None:
+    store.write_rows("one", [row(1)])
+    (store.folder / "plan.parquet").unlink()
+    with pytest.raises(StoreError, match=r"missing.*again"):
+        store.table()
 
 
 def test_what_is_present_need_not_be_measured_again(store: Store) -> None:
     store.write_rows("a", [row(1), row(2, status="chance"), row(3, timing="exclusive")])
     failed = ("error", "crashed", "timeout", "out_of_memory")
     store.write_rows("b", [row(4 + i, status=status) for i, status in enumerate(failed)])
-    everything = {f"key-{i}" for i in range(1, 8)}
+    everything = {f"key-{i}-ORB-ORB" for i in range(1, 8)}
     assert store.present("shared", retry_failed=False) == everything
-    assert store.present("exclusive", retry_failed=False) == {"key-3"}
-    assert store.present("shared", retry_failed=True) == {"key-1", "key-2", "key-3"}
+    assert store.present("exclusive", retry_failed=False) == {"key-3-ORB-ORB"}
+    assert store.present("shared", retry_failed=True) == {f"key-{i}-ORB-ORB" for i in (1, 2, 3)}
 
 
 def test_an_empty_folder_has_an_empty_table(store: Store) -> None:
@@ -109,14 +173,15 @@ def test_leftovers_of_an_interrupted_writing_are_removed(store: Store) -> None:
         (store.folder / path).write_bytes(b"half")
     assert len(store.table()) == 1
     again = Store.create(store.folder)
-    assert not list(store.folder.rglob("*.tmp"))
+    with again.writing():
+        assert not list(store.folder.rglob("*.tmp"))
     assert len(again.table()) == 1
 
 
 def test_writing_leaves_nothing_beside(store: Store) -> None:
     store.write_rows("one", [row(1)])
     names = {path.name for path in store.folder.rglob("*") if path.is_file()}
-    assert names == {"one.parquet", "run.json"}
+    assert names == {"one.parquet", "run.json", "plan.parquet"}
 
 
 def test_a_failed_writing_leaves_the_old_part(
@@ -181,6 +246,7 @@ def test_the_record_of_the_run_is_readable_json(store: Store) -> None:
 
 
 def test_status_counts_what_is_done_left_and_failed(store: Store) -> None:
+    store.write_plan(planned([row(3, descriptor="BRISK"), row(10)]))
     store.write_rows(
         "a",
         [
@@ -192,7 +258,7 @@ def test_status_counts_what_is_done_left_and_failed(store: Store) -> None:
         ],
     )
     status = Results(store.folder).status()
-    assert (status.planned, status.done, status.left) == (9, 5, 4)
+    assert (status.planned, status.done, status.left) == (11, 5, 6)
     assert status.statuses == {"error": 3, "chance": 1, "ok": 1}
     failures = {(f["status"], f["descriptor"]): f["rows"] for f in status.failures.to_dicts()}
     assert failures == {("chance", "ORB"): 1, ("error", "ORB"): 2, ("error", "BRISK"): 1}

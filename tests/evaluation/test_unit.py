@@ -44,11 +44,11 @@ def calls(draw: st.DrawFn) -> StageCall | None:
     return StageCall(stage, draw(st.integers(0, 30)), "image", "ORB", descriptor, named)
 
 
-@given(units(), calls(), st.booleans())
+@given(units(), calls(), st.booleans(), st.none() | st.frozensets(st.integers(0, 30)))
 def test_splitting_never_loses_or_doubles_a_row(
-    unit: Unit, call: StageCall | None, certain: bool
+    unit: Unit, call: StageCall | None, certain: bool, pairs: frozenset[int] | None
 ) -> None:
-    remaining, guilty = split(unit, call, certain=certain)
+    remaining, guilty = split(unit, call, certain=certain, pairs=pairs)
     parts = [*remaining, *([guilty] if guilty else [])]
     assert keys(*parts) == keys(unit)
     assert all(part.rows for part in remaining)
@@ -91,9 +91,26 @@ def test_the_pair_in_which_a_process_died_is_tried_once_more_alone() -> None:
 def test_a_stage_that_used_up_its_time_is_given_up_at_once() -> None:
     unit = Unit("ORB", tuple(work(pair, COMBINATIONS[:2]) for pair in (3, 4, 5)))
     remaining, guilty = split(unit, StageCall("detect", 4, "b", "ORB"), certain=True)
-    assert [[w.pair for w in part.work] for part in remaining] == [[3], [5]]
+    assert [[w.pair for w in part.work] for part in remaining] == [[3, 5]]
     assert guilty is not None
     assert [w.pair for w in guilty.work] == [4]
+
+
+def test_every_pair_that_needs_the_image_is_given_up_with_it() -> None:
+    unit = Unit("ORB", tuple(work(pair, COMBINATIONS) for pair in (3, 4, 5)))
+    image = frozenset({4, 5, 9})
+    call = StageCall("detect", 4, "b", "ORB")
+    remaining, guilty = split(unit, call, certain=True, pairs=image)
+    assert [[w.pair for w in part.work] for part in remaining] == [[3]]
+    assert guilty is not None
+    assert [w.pair for w in guilty.work] == [4, 5]
+    call = StageCall("describe", 4, "b", "ORB", "BRISK")
+    remaining, guilty = split(unit, call, certain=True, pairs=image)
+    assert guilty is not None
+    assert keys(guilty) == keys(
+        Unit("ORB", (work(4, COMBINATIONS[4:8]), work(5, COMBINATIONS[4:8])))
+    )
+    assert keys(*remaining, guilty) == keys(unit)
 
 
 @pytest.mark.parametrize(
