@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -10,9 +11,13 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
+from aerocues.errors import MethodUnavailableError
 from aerocues.methods.arrays import Features, Keypoints, Matches
+from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.methods.matchers import NormRow
 from aerocues.methods.registry import Methods, opencv_methods
+from aerocues.methods.selection import select
 from tests.methods.pictures import shifted_pair, strongest
 
 
@@ -20,8 +25,14 @@ def features(descriptors: NDArray[Any]) -> Features:
     return Features(Keypoints.from_xy(np.zeros((len(descriptors), 2))), descriptors)
 
 
-def match(name: str, norm: str, first: NDArray[Any], second: NDArray[Any]) -> Matches:
-    matcher = make_matcher(opencv_methods(), name, norm)
+def match(
+    name: str,
+    norm: str,
+    first: NDArray[Any],
+    second: NDArray[Any],
+    methods: Methods | None = None,
+) -> Matches:
+    matcher = make_matcher(methods or opencv_methods(), name, norm)
     return matcher.read(matcher.call(features(first), features(second)))
 
 
@@ -158,3 +169,65 @@ def test_bits_without_any_likeness_are_handled() -> None:
     matches = match("FLANN", "HAM", zeros, ones)
     assert len(matches) <= 1
     assert len(match("BF", "HAM", zeros, ones)) == 1
+
+
+def with_matcher(**change: Any) -> Methods:
+    """OpenCV's methods and one row more: FLANN under another name, changed."""
+    methods = opencv_methods()
+    row = replace(methods.matchers["FLANN"], name="THIRD", **change)
+    return replace(methods, matchers={**methods.matchers, "THIRD": row})
+
+
+@pytest.mark.opencv_versions
+def test_one_more_row_is_one_more_matcher() -> None:
+    trees = {"algorithm": 1, "trees": 1}
+    hasty = with_matcher(parameters={"L2": {**trees, "checks": 2}})
+    patient = with_matcher(parameters={"L2": {**trees, "checks": 2000}})
+    random = np.random.default_rng(5)
+    first, second = random.normal(size=(2, 600, 32)).astype(np.float32)
+    cv2.setRNGSeed(0)
+    hasty_matches = match("THIRD", "L2", first, second, hasty)
+    cv2.setRNGSeed(0)
+    patient_matches = match("THIRD", "L2", first, second, patient)
+    exact = mutual_neighbours(distances(first, second, "L2"))
+    assert [tuple(pair) for pair in patient_matches.indices.tolist()] == exact
+    assert len(hasty_matches) != len(exact)
+    assert Combination.parse("SIFT-SIFT-L2-THIRD") in select(patient, "SIFT-*-THIRD")
+    recorded = patient.parameters(Combination.parse("SIFT-SIFT-L2-THIRD"))["matcher"]
+    assert recorded == ["opencv", "THIRD", {**trees, "checks": 2000}]
+
+
+def test_a_row_without_search_parameters_takes_those_of_opencv() -> None:
+    methods = with_matcher(parameters={"L2": {"algorithm": 1, "trees": 4}})
+    one = np.eye(8, dtype=np.float32)
+    assert len(match("THIRD", "L2", one, one, methods)) == 8
+
+
+def test_a_norm_is_one_row_with_its_constant() -> None:
+    methods = opencv_methods()
+    brute_force = methods.matchers["BF"]
+    row = replace(
+        brute_force,
+        parameters={**brute_force.parameters, "L1": {}},
+        dtypes={**brute_force.dtypes, "L1": ("float32",)},
+    )
+    methods = replace(
+        methods,
+        norms={**methods.norms, "L1": NormRow("L1", "NORM_L1", "sum of absolute differences")},
+        matchers={**methods.matchers, "BF": row},
+    )
+    first, second = np.array([[0, 0]], np.float32), np.array([[3, 4]], np.float32)
+    assert match("BF", "L1", first, second, methods).distance.tolist() == [7]
+    assert match("BF", "L2", first, second, methods).distance.tolist() == [5]
+
+
+def test_what_a_row_names_must_be_known() -> None:
+    with pytest.raises(MethodUnavailableError, match="'Guess', which aerocues does not know"):
+        make_matcher(with_matcher(factory="Guess"), "THIRD", "L2")
+    methods = opencv_methods()
+    lost = replace(methods, norms={"L2": NormRow("L2", "NORM_OF_NOBODY", "")})
+    with pytest.raises(MethodUnavailableError, match="NORM_OF_NOBODY"):
+        make_matcher(lost, "BF", "L2")
+    odd = with_matcher(factory="BFMatcher", parameters={"L2": {"speed": 3}})
+    with pytest.raises(MethodUnavailableError, match="speed"):
+        make_matcher(odd, "THIRD", "L2")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -16,13 +17,14 @@ from aerocues.methods.arrays import (
     Matches,
     finite_features,
 )
+from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,
     FlannMatcher,
     OpenCVDescriptor,
     OpenCVDetector,
 )
-from aerocues.methods.parameters import OPENCV
+from aerocues.methods.parameters import OPENCV, Value
 from aerocues.methods.plugins import load_factory
 from aerocues.methods.registry import Methods
 
@@ -47,6 +49,13 @@ class MatcherStage(Protocol):
 
     def call(self, features_1: Features, features_2: Features) -> Any: ...
     def read(self, raw: Any) -> Matches: ...
+
+
+OPENCV_MATCHERS: Mapping[str, Callable[[NormRow, Mapping[str, Value]], MatcherStage]] = {
+    "BFMatcher": BruteForceMatcher,
+    "FlannBasedMatcher": FlannMatcher,
+}
+"""What runs each class of OpenCV that rows of the table of matchers name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,4 +165,9 @@ def make_matcher(methods: Methods, name: str, norm: str) -> MatcherStage:
     parameters = dict(row.parameters.get(norm, {}))
     if row.origin != OPENCV:
         return ArrayMatcher(_plugin(row.factory, parameters), norm)
-    return FlannMatcher(parameters) if name == "FLANN" else BruteForceMatcher(norm)
+    if row.factory not in OPENCV_MATCHERS:
+        raise MethodUnavailableError(
+            f"the matcher {name} is made by {row.factory!r}, which aerocues does not know; "
+            f"use {' or '.join(OPENCV_MATCHERS)} in its row"
+        )
+    return OPENCV_MATCHERS[row.factory](methods.norms[norm], parameters)

@@ -32,7 +32,10 @@ class MatcherRow:
         What it is given for each norm that it supports.
     dtypes : mapping of norm to descriptor types
         The element types that it can match under each norm.
-    factory, origin, unavailable
+    factory : str
+        The class of OpenCV that matches, a key of `aerocues.methods.making.OPENCV_MATCHERS`, or
+        ``module:attribute`` of a plug-in.
+    origin, unavailable
         As for a detector.
     """
 
@@ -41,7 +44,7 @@ class MatcherRow:
     reference: str
     parameters: Mapping[str, Mapping[str, Value]] = field(repr=False)
     dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(repr=False)
-    factory: str = ""
+    factory: str
     origin: str = OPENCV
     unavailable: str | None = None
 
@@ -58,6 +61,7 @@ MATCHERS: tuple[MatcherRow, ...] = (
         "exact nearest neighbours",
         {"L2": {}, "HAM": {}},
         {"L2": ("float32", "uint8"), "HAM": ("uint8",)},
+        factory="BFMatcher",
     ),
     MatcherRow(
         "FLANN",
@@ -74,5 +78,6 @@ MATCHERS: tuple[MatcherRow, ...] = (
             },
         },
         {"L2": ("float32",), "HAM": ("uint8",)},
+        factory="FlannBasedMatcher",
     ),
 )

@@ -6,19 +6,21 @@ call that is timed, ``read`` turns its result into arrays.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.errors import MethodUnavailableError
 from aerocues.methods.arrays import Features, Keypoints, Matches, finite_features
 from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.detectors import DetectorRow
-from aerocues.methods.parameters import create_opencv
+from aerocues.methods.matchers import NormRow
+from aerocues.methods.parameters import Value, create_opencv
 
-NORM_CONSTANTS = {"L2": cv2.NORM_L2, "HAM": cv2.NORM_HAMMING}
+SEARCH_PARAMETERS = ("checks", "eps", "sorted", "explore_all_trees")
 
 
 def to_opencv(keypoints: Keypoints) -> list[Any]:
@@ -97,8 +99,15 @@ class OpenCVDescriptor:
 class BruteForceMatcher:
     """Exact nearest neighbours, cross-checked (``cv2.BFMatcher``)."""
 
-    def __init__(self, norm: str) -> None:
-        self._native = cv2.BFMatcher(NORM_CONSTANTS[norm], crossCheck=True)
+    def __init__(self, norm: NormRow, parameters: Mapping[str, Value]) -> None:
+        try:
+            constant = getattr(cv2, norm.constant)
+            self._native = cv2.BFMatcher(constant, crossCheck=True, **parameters)
+        except (cv2.error, TypeError, AttributeError) as error:
+            raise MethodUnavailableError(
+                f"OpenCV {cv2.__version__} cannot match by brute force under {norm.constant} with "
+                f"{dict(parameters)}: {str(error).strip()}; correct the row of the norm or matcher"
+            ) from error
 
     def call(self, features_1: Features, features_2: Features) -> Any:
         return self._native.match(features_1.descriptors, features_2.descriptors)
@@ -111,12 +120,15 @@ class FlannMatcher:
     """Approximate nearest neighbours in both directions (``cv2.FlannBasedMatcher``).
 
     The index is built anew in each direction and counts as matching. Only mutual matches stay.
+    The algorithm of the index decides the norm.
     """
 
-    def __init__(self, parameters: dict[str, Any]) -> None:
-        index = dict(parameters)
-        self._search = {"checks": index.pop("checks")}
-        self._index = index
+    def __init__(self, norm: NormRow, parameters: Mapping[str, Value]) -> None:
+        self._search: dict[str, Any] = {}
+        self._index: dict[str, Any] = {}
+        for name, value in parameters.items():
+            kind = self._search if name in SEARCH_PARAMETERS else self._index
+            kind[name] = value
 
     def call(self, features_1: Features, features_2: Features) -> Any:
         first, second = features_1.descriptors, features_2.descriptors
