@@ -37,9 +37,6 @@ OUTCOMES = {
 # Generous: a crowded machine takes seconds to start each of the many workers.
 pytestmark = pytest.mark.timeout(600)
 
-QUICK = ["FAIL"]
-SLOW = [fault for fault in OUTCOMES if fault not in QUICK]
-
 
 @dataclass(frozen=True)
 class Arena:
@@ -107,9 +104,8 @@ def combinations_of(fault: str) -> str:
     return f"{fault}-ORB-HAM-BF,{fault}-BRIEF-HAM-BF,ORB-D_{fault}-HAM-BF,ORB-ORB-HAM-BF"
 
 
-@pytest.mark.parametrize(
-    "fault", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", OUTCOMES)
 def test_a_fault_costs_only_itself(arena: Arena, fault: str) -> None:
     combinations = combinations_of(fault)
     healthy = arena.healthy(combinations)

@@ -117,7 +117,7 @@ def closed_disk(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -> None:
-    dataset = write_dataset(tmp_path / "images", strip(6))
+    dataset = write_dataset(tmp_path / "images", strip(4))
     combinations = "ORB-ORB-HAM-*,ORB-BRIEF-HAM-BF,FAST-ORB-HAM-BF"
     ballast = small_disk / "ballast"
     results = small_disk / "results"
@@ -131,7 +131,7 @@ def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -
     with pytest.raises(StoreError, match=r"cannot write .*No space left"):
         export_table(first.table(), small_disk / "table.csv", "csv")
     assert not list(results.rglob("*.tmp"))
-    assert Results(results).status().planned >= 5
+    assert Results(results).status().planned >= 3
     ballast.unlink()
     (small_disk / "more").unlink()
     again = run(dataset, "ORB-ORB-HAM-BF", results, engine=InlineEngine())
