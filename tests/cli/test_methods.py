@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
 from tests.cli.conftest import Call
+from tests.methods.distribution import write_distribution
 
 
 def test_the_figures_of_opencv(call: Call) -> None:
@@ -35,6 +37,21 @@ def test_every_method_is_listed_with_its_source(call: Call) -> None:
 def test_a_preset_is_named_and_must_exist(call: Call) -> None:
     assert json.loads(call("methods", "--preset", "thesis", "--json").out)["preset"] == "thesis"
     assert call("methods", "--preset", "nothing").code == 2
+
+
+def test_what_is_wrong_with_plug_ins_is_told_and_stops_nothing(
+    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert json.loads(call("methods", "--json").out)["problems"] == []
+    offered = {"detectors": {"orb": "unfit_here:Orb", "Odd-Name": "unfit_here:Orb"}}
+    write_distribution(tmp_path, "unfit-here", offered, {"unfit_here.py": ""})
+    monkeypatch.syspath_prepend(tmp_path)
+    problems = json.loads(call("methods", "--json").out)["problems"]
+    assert len(problems) == 2
+    text = " ".join(call("methods").out.split())
+    for problem in problems:
+        assert f"Problem: {problem}" in text
+    assert call("methods", "why", "orb-orb-ham-bf").out == "ORB-ORB-HAM-BF runs\n"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import importlib
 import sys
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +13,7 @@ from aerocues.errors import SelectionError
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_unavailable
+from aerocues.methods.counting import count_combinations
 from aerocues.methods.making import (
     ArrayDescriptor,
     ArrayDetector,
@@ -23,7 +27,7 @@ from aerocues.methods.presets import preset_named
 from aerocues.methods.registry import Methods, opencv_methods
 from aerocues.methods.selection import runnable, select
 from tests.methods.arena import CODE, ENTRY_POINTS
-from tests.methods.distribution import write_distribution
+from tests.methods.distribution import EntryPoints, write_distribution
 from tests.methods.pictures import shifted_pair
 
 
@@ -33,6 +37,24 @@ def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Methods:
     monkeypatch.syspath_prepend(tmp_path)
     forget(monkeypatch, "arena")
     return installed_methods()
+
+
+Install = Callable[[str, EntryPoints, Mapping[str, str]], Methods]
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
+    """Install a distribution and list the methods."""
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def installed(name: str, entry_points: EntryPoints, code: Mapping[str, str]) -> Methods:
+        write_distribution(tmp_path, name, entry_points, code)
+        importlib.invalidate_caches()
+        for path in code:
+            forget(monkeypatch, path.split("/")[0])
+        return installed_methods()
+
+    return installed
 
 
 def forget(monkeypatch: pytest.MonkeyPatch, package: str) -> None:
@@ -126,27 +148,40 @@ def test_parameters_decide_what_a_plug_in_finds(arena: Methods) -> None:
 @pytest.mark.parametrize(
     ("entry_points", "words"),
     [
-        ({"detectors": {"orb": "arena.methods:Corners"}}, "a detector ORB, which exists already"),
-        ({"matchers": {"BF": "arena.methods:Mutual"}}, "a matcher BF, which exists already"),
-        ({"extractors": {"sift": "arena.methods:CornerBits"}}, "SIFT, which exists already"),
-        ({"detectors": {"my-corners": "arena.methods:Corners"}}, "'my-corners'; its name may"),
-        ({"descriptors": {"a b": "arena.methods:Patches"}}, "'a b'; its name may"),
+        (
+            {"detectors": {"orb": "arena.methods:Corners"}},
+            "a detector ORB, which is left out: opencv has one of that name",
+        ),
+        ({"matchers": {"BF": "arena.methods:Mutual"}}, "a matcher BF, which is left out"),
+        ({"extractors": {"sift": "arena.methods:CornerBits"}}, "a detector SIFT, which is left"),
+        ({"extractors": {"VGG": "arena.methods:CornerBits"}}, "a descriptor VGG, which is left"),
+        ({"detectors": {"my-corners": "arena.methods:Corners"}}, "'my-corners', which is left out"),
+        ({"descriptors": {"a b": "arena.methods:Patches"}}, "'a b', which is left out: a name may"),
     ],
 )
-def test_a_taken_or_malformed_name_is_an_error_that_names_the_package(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    entry_points: dict[str, dict[str, str]],
-    words: str,
+def test_a_taken_or_malformed_name_is_left_out_and_told_with_the_package(
+    install: Install, entry_points: dict[str, dict[str, str]], words: str
 ) -> None:
-    write_distribution(tmp_path, "clashing", entry_points, CODE)
-    monkeypatch.syspath_prepend(tmp_path)
-    forget(monkeypatch, "arena")
-    with pytest.raises(SelectionError) as raised:
-        installed_methods()
-    assert words in str(raised.value)
-    assert "the plug-in clashing 1.2" in str(raised.value)
-    assert "rename its entry point" in str(raised.value)
+    methods = install("clashing", entry_points, CODE)
+    (problem,) = methods.problems
+    assert words in problem
+    assert "the plug-in clashing 1.2" in problem
+    assert "rename its entry point" in problem
+    assert without_problems(methods) == opencv_methods()
+    assert methods.with_preset(preset_named("thesis")).problems == methods.problems
+
+
+def without_problems(methods: Methods) -> Methods:
+    return replace(methods, problems=())
+
+
+def test_of_two_plug_ins_of_one_name_the_first_is_kept(install: Install) -> None:
+    install("one", {"detectors": {"CORNERS": "arena.methods:Corners"}}, CODE)
+    methods = install("two", {"extractors": {"corners": "arena.methods:CornerBits"}}, CODE)
+    assert methods.detectors["CORNERS"].origin == "one 1.2"
+    assert "CORNERS" not in methods.descriptors
+    assert "the plug-in two 1.2 offers a detector CORNERS" in methods.problems[0]
+    assert "one 1.2 has one of that name" in methods.problems[0]
 
 
 BAD = """
@@ -155,29 +190,83 @@ class Doubles:
 
 class Speechless:
     pass
+
+class Module:
+    def parameters(self):
+        return iter(())
+
+class Listed:
+    parameters = ["size", 3]
+
+class Device:
+    parameters = {"device": object()}
+
+class Numbered:
+    parameters = {1: 2}
+
+class ListedTypes:
+    dtypes = ["float32"]
+
+class NoTypes:
+    dtypes = {"L2": None}
+
+class OtherTypes:
+    dtypes = {"L2": ("float32", "int8")}
+
+class Evil(type):
+    @property
+    def reference(cls):
+        raise RuntimeError("not to be asked")
+
+class Asked(metaclass=Evil):
+    pass
 """
 
 
-def test_a_plug_in_that_does_not_say_what_it_gives_is_unavailable(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("group", "value", "told"),
+    [
+        ("descriptors", "unfit.methods:Doubles", "'float64'"),
+        ("matchers", "unfit.methods:Speechless", "dtypes"),
+        ("detectors", "unfit.burnt:Anything", "RuntimeError: no accelerator here"),
+        ("extractors", "unfit.methods:Module", "'parameters' must be a mapping"),
+        ("detectors", "unfit.methods:Listed", "names to values, not a list"),
+        ("descriptors", "unfit.methods:Device", "'parameters' must be numbers and texts"),
+        ("matchers", "unfit.methods:Module", "'parameters' must be a mapping"),
+        ("detectors", "unfit.methods:Numbered", "the names of its 'parameters' must be texts"),
+        ("matchers", "unfit.methods:ListedTypes", "norms to descriptor types, not a list"),
+        ("matchers", "unfit.methods:NoTypes", "TypeError"),
+        ("matchers", "unfit.methods:OtherTypes", "'int8'"),
+        ("detectors", "unfit.methods:Asked", "RuntimeError: not to be asked"),
+        ("detectors", "unfit.leaving:Anything", "SystemExit: 3"),
+        ("detectors", "unfit.silent:Anything", "ImportError"),
+        ("descriptors", "unfit.several:Anything", "first line second line"),
+        ("detectors", "no reference", "does not exist"),
+    ],
+)
+def test_a_plug_in_that_cannot_be_used_is_listed_with_the_reason(
+    install: Install, group: str, value: str, told: str
 ) -> None:
-    offered = {
-        "descriptors": {"DOUBLES": "unfit.methods:Doubles"},
-        "matchers": {"SPEECHLESS": "unfit.methods:Speechless"},
-        "detectors": {"BURNT": "unfit.burnt:Anything"},
-    }
     code = {
         "unfit/__init__.py": "",
         "unfit/methods.py": BAD,
         "unfit/burnt.py": "raise RuntimeError('no accelerator here')",
+        "unfit/leaving.py": "raise SystemExit(3)",
+        "unfit/silent.py": "raise ImportError",
+        "unfit/several.py": r"raise ImportError('first line\nsecond line')",
     }
-    write_distribution(tmp_path, "unfit", offered, code)
-    monkeypatch.syspath_prepend(tmp_path)
-    forget(monkeypatch, "unfit")
-    methods = installed_methods()
-    assert "'float64'" in (methods.descriptors["DOUBLES"].unavailable or "")
-    assert "dtypes" in (methods.matchers["SPEECHLESS"].unavailable or "")
-    assert methods.detectors["BURNT"].unavailable == "RuntimeError: no accelerator here"
+    methods = install("unfit", {group: {"UNFIT": value}}, code)
+    rows = [
+        table["UNFIT"]
+        for table in (methods.detectors, methods.descriptors, methods.matchers)
+        if "UNFIT" in table
+    ]
+    assert len(rows) == (2 if group == "extractors" else 1)
+    for row in rows:
+        assert told in (row.unavailable or "")
+    assert methods.problems == ()
+    assert runnable(methods) == runnable(opencv_methods())
+    assert count_combinations(methods).unavailable > 0
 
 
 class Returns:

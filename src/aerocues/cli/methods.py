@@ -110,6 +110,7 @@ def _facts(found: Methods, preset: str) -> dict[str, Any]:
         ],
         "norms": [{"name": row.name, "title": row.title} for row in found.norms.values()],
         "matchers": [{**_describe(row), "title": row.title} for row in found.matchers.values()],
+        "problems": list(found.problems),
     }
 
 
@@ -152,6 +153,8 @@ def _print_methods(found: Methods, preset: str) -> None:
         console.print(_counted(number, f"cannot: {cause}"), style="dim")
     if counts.unavailable:
         console.print(_counted(counts.unavailable, "cannot here: unavailable"), style="yellow")
+    for problem in found.problems:
+        console.print(Text(f"\nProblem: {problem}", style="yellow"))
     console.print("\nWhy one cannot: aerocues methods why SIFT-ORB-HAM-BF")
 
 

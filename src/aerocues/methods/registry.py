@@ -17,12 +17,16 @@ from aerocues.methods.presets import Preset
 
 @dataclass(frozen=True)
 class Methods:
-    """The methods by name, in the order of the tables."""
+    """The methods by name, in the order of the tables.
+
+    ``problems`` tells of plug-ins that are left out, one sentence each.
+    """
 
     detectors: Mapping[str, DetectorRow]
     descriptors: Mapping[str, DescriptorRow]
     norms: Mapping[str, NormRow]
     matchers: Mapping[str, MatcherRow]
+    problems: tuple[str, ...] = ()
 
     def combinations(self) -> Iterator[Combination]:
         """Every combination that can be written down, runnable or not."""

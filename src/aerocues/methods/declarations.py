@@ -1,0 +1,104 @@
+"""What a plug-in says about itself, checked: nothing that it says may break a list of methods."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import EntryPoint
+from typing import Any, get_args
+
+from aerocues.methods.descriptors import DescriptorType
+from aerocues.methods.parameters import Value
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What a plug-in says about itself, or why it cannot be used.
+
+    Parameters
+    ----------
+    reference, title : str
+        Where it was published and what it is.
+    parameters : mapping
+        Keyword arguments it is made with.
+    dtype : {"uint8", "float32"}
+        Type of the descriptors that a descriptor or extractor gives.
+    dtypes : mapping of norm to descriptor types
+        What a matcher takes.
+    problem : str or None
+        Why it cannot be used; the rest is then empty.
+    """
+
+    reference: str = ""
+    title: str = ""
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    dtype: DescriptorType = "float32"
+    dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(default_factory=dict)
+    problem: str | None = None
+
+
+class _UnfitError(Exception):
+    """Something that a plug-in says is not of the form that it must have."""
+
+
+def read_declaration(entry: EntryPoint, group: str) -> Declaration:
+    """Load a plug-in of a group, such as ``matchers``, and read what it says about itself."""
+    try:
+        factory = entry.load()
+        return Declaration(
+            str(getattr(factory, "reference", "")),
+            str(getattr(factory, "title", "")),
+            _parameters(factory),
+            _dtype(getattr(factory, "dtype", "float32"), "dtype"),
+            _dtypes(factory) if group == "matchers" else {},
+        )
+    except (_UnfitError, ImportError) as error:
+        problem = str(error) or type(error).__name__
+    except AttributeError as error:
+        problem = f"{entry.value} does not exist: {error}"
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - third-party code may raise anything
+        problem = f"{type(error).__name__}: {error}"
+    return Declaration(problem=" ".join(problem.split()))
+
+
+def _mapping(factory: Any, name: str, of_what: str) -> Mapping[Any, Any]:
+    declared = getattr(factory, name, {})
+    if not isinstance(declared, Mapping):
+        kind = type(declared).__name__
+        raise _UnfitError(f"its {name!r} must be a mapping of {of_what}, not a {kind}")
+    return declared
+
+
+def _parameters(factory: Any) -> dict[str, Value]:
+    declared = dict(_mapping(factory, "parameters", "names to values"))
+    try:
+        written = json.dumps(declared)
+    except (TypeError, ValueError) as error:
+        raise _UnfitError(
+            f"its 'parameters' must be numbers and texts, to become part of the record: {error}"
+        ) from error
+    if not all(isinstance(name, str) for name in declared):
+        raise _UnfitError(f"the names of its 'parameters' must be texts: {written}")
+    return declared
+
+
+def _dtype(declared: Any, name: str) -> DescriptorType:
+    for known in get_args(DescriptorType):
+        if str(declared) == known:
+            dtype: DescriptorType = known
+            return dtype
+    raise _UnfitError(f"its {name} must be 'uint8' or 'float32', not {declared!r}")
+
+
+def _dtypes(factory: Any) -> dict[str, tuple[DescriptorType, ...]]:
+    declared = _mapping(factory, "dtypes", "norms to descriptor types")
+    if not declared:
+        raise _UnfitError("it does not state which norms and descriptor types it takes ('dtypes')")
+    return {
+        str(norm): tuple(
+            _dtype(dtype, f"dtypes under {norm}")
+            for dtype in ((dtypes,) if isinstance(dtypes, str) else dtypes)
+        )
+        for norm, dtypes in declared.items()
+    }
