@@ -49,13 +49,24 @@ def magsac_parameters(settings: Verification, *, guided: bool = False, seed: int
     return parameters
 
 
+def _has_rank_two(matrix: Any) -> bool:
+    """Whether any two rows of a (3, 3) matrix are independent: a 2 x 2 minor is not zero."""
+    (a, b, c), (d, e, f), (g, h, i) = matrix.tolist()
+    minors = (
+        *(a * e - b * d, a * f - c * d, b * f - c * e),
+        *(a * h - b * g, a * i - c * g, b * i - c * h),
+        *(d * h - e * g, d * i - f * g, e * i - f * h),
+    )
+    largest = max(abs(value) for value in (a, b, c, d, e, f, g, h, i))
+    return bool(max(abs(minor) for minor in minors) > 1e-12 * largest * largest)
+
+
 def _checked(matrix: Any, mask: Any, count: int) -> Model:
     """The model if it is one: a single finite matrix of rank two or more, with inliers."""
     nothing = Model(None, np.zeros(count, bool))
     if matrix is None or mask is None or matrix.shape != (3, 3) or not np.isfinite(matrix).all():
         return nothing
-    strength = np.linalg.svd(matrix, compute_uv=False)
-    if strength[1] <= 1e-12 * strength[0]:
+    if not _has_rank_two(matrix):
         return nothing
     inliers = np.asarray(mask).reshape(-1).astype(bool)
     return Model(np.asarray(matrix, np.float64), inliers) if inliers.any() else nothing

@@ -7,6 +7,7 @@ call that is timed, ``read`` turns its result into arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import cv2
@@ -42,19 +43,16 @@ def to_opencv(keypoints: Keypoints) -> list[Any]:
 
 def from_opencv(native: Sequence[Any]) -> Keypoints:
     """Keypoints from a sequence of ``cv2.KeyPoint``, in the same order."""
-    count = len(native)
-    values = np.array(
-        [(*point.pt, point.size, point.angle, point.response) for point in native], np.float32
-    ).reshape(count, 5)
-    codes = np.array([(point.octave, point.class_id) for point in native], np.int32)
-    codes = codes.reshape(count, 2)
+    rows = (
+        (*point.pt, point.size, point.angle, point.response, point.octave, point.class_id)
+        for point in native
+    )
+    # Doubles hold every float32 and int32 exactly.
+    values = np.fromiter(chain.from_iterable(rows), np.float64, 7 * len(native)).reshape(-1, 7)
+    size, angle, response = values[:, 2:5].T.astype(np.float32)
+    octave, class_id = values[:, 5:].T.astype(np.int32)
     return Keypoints(
-        xy=np.ascontiguousarray(values[:, :2]),
-        size=values[:, 2].copy(),
-        angle=values[:, 3].copy(),
-        response=values[:, 4].copy(),
-        octave=codes[:, 0].copy(),
-        class_id=codes[:, 1].copy(),
+        np.ascontiguousarray(values[:, :2], np.float32), size, angle, response, octave, class_id
     )
 
 
@@ -148,6 +146,6 @@ class FlannMatcher:
 
 
 def _from_dmatches(native: Sequence[Any]) -> Matches:
-    indices = np.array([(match.queryIdx, match.trainIdx) for match in native], np.int32)
-    distance = np.array([match.distance for match in native], np.float32)
-    return Matches(indices.reshape(-1, 2), distance)
+    rows = ((match.queryIdx, match.trainIdx, match.distance) for match in native)
+    values = np.fromiter(chain.from_iterable(rows), np.float64, 3 * len(native)).reshape(-1, 3)
+    return Matches(values[:, :2].astype(np.int32), values[:, 2].astype(np.float32))
