@@ -10,7 +10,8 @@ import pytest
 from aerocues.cli.live import LiveDisplay
 from aerocues.cli.progress import PlainLines, Tally, spoken_seconds
 from aerocues.evaluation.engine import Activity, Finished
-from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.plan import Exclusion, Plan
+from aerocues.evaluation.planned_rows import PlannedRow
 from aerocues.evaluation.unit import PairWork, StageCall, Unit
 from aerocues.methods.combination import Combination
 
@@ -33,8 +34,29 @@ def done(of: Unit, status: str = "ok") -> Finished:
     return Finished(of, [{"status": status}] * of.rows)
 
 
+def plan_of(*units: Unit, rows: int, exclusions: tuple[Exclusion, ...] = ()) -> Plan:
+    """A plan of `rows` rows; those that no unit measures are there already."""
+    planned = (PlannedRow(0, Combination("ORB", "ORB", "HAM", "BF"), str(i)) for i in range(rows))
+    return Plan(units, tuple(planned), exclusions)
+
+
 DEAR, CHEAP = unit(20, 30.0), unit(20, 10.0)
-PLAN = Plan((DEAR, CHEAP), rows_planned=100, rows_present=60, exclusions=())
+PLAN = plan_of(DEAR, CHEAP, rows=100)
+
+
+def ruled_out(combination: str, reason: str, pairs: int) -> Exclusion:
+    return Exclusion(Combination.parse(combination), reason, pairs)
+
+
+EXCLUSIONS = (
+    ruled_out("ORB-LUCID-HAM-BF", "images are gray", 3),
+    ruled_out("ORB-FREAK-HAM-BF", "images are small", 1),
+    ruled_out("BRISK-LUCID-HAM-BF", "images are gray", 2),
+)
+LEFT_OUT = [
+    "left out: 2 combinations on 3 pairs, because images are gray",
+    "left out: 1 combination on 1 pair, because images are small",
+]
 
 
 @pytest.mark.parametrize(
@@ -67,7 +89,7 @@ def test_rows_that_were_there_count_and_cost_tells_the_time_left() -> None:
 def test_a_plan_without_rows_is_done() -> None:
     tally = Tally()
     assert tally.share == 1.0
-    tally.planned(Plan((), 0, 0, ()))
+    tally.planned(plan_of(rows=0))
     assert tally.share == 1.0
 
 
@@ -75,7 +97,7 @@ def test_plain_lines_come_at_most_every_ten_seconds(capsys: pytest.CaptureFixtur
     clock = Clock()
     lines = PlainLines(clock=clock)
     small = [unit(1, 1.0) for _ in range(100)]
-    lines.planned(Plan(tuple(small), 100, 0, ()))
+    lines.planned(plan_of(*small, rows=100))
     for one in small:
         clock.now += 0.5
         lines.finished(done(one))
@@ -91,7 +113,7 @@ def test_plain_lines_come_each_minute_even_where_nothing_moves(
 ) -> None:
     clock = Clock()
     lines = PlainLines(clock=clock)
-    lines.planned(Plan((DEAR,), 20, 0, ()))
+    lines.planned(plan_of(DEAR, rows=20))
     for _ in range(180):
         clock.now += 1
         lines.working([])
@@ -122,3 +144,20 @@ def test_the_live_display_shows_workers_rows_and_failures() -> None:
     assert len(first) == 100
     assert second.split() == ["worker", "2", "between", "two", "units"]
     assert outcomes.split() == ["so", "far", "timeout", "20"]
+
+
+@pytest.mark.parametrize("units", [(), (DEAR,)])
+def test_what_images_rule_out_is_told_by_reason_even_where_nothing_is_left(
+    units: tuple[Unit, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    from rich.console import Console
+    from rich.live import Live
+
+    PlainLines().planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS))
+    assert capsys.readouterr().err.splitlines()[:2] == LEFT_OUT
+    screen = io.StringIO()
+    console = Console(file=screen, width=40, force_terminal=True, color_system=None)
+    with Live(console=console, auto_refresh=False, transient=True) as live:
+        LiveDisplay(live=live).planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS))
+    for line in LEFT_OUT:
+        assert line in screen.getvalue()

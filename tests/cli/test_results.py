@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -98,3 +99,30 @@ def test_two_forms_at_once_are_refused(call: Call, finished: Path) -> None:
     answer = call("results", finished, "--csv", "-", "--json")
     assert answer.code == 2
     assert "choose one of" in answer.err
+
+
+def test_what_csv_cannot_hold_is_told_with_the_form_that_can(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    query = "select detector, array_agg(matches) as matches from results group by detector"
+    for target in ("-", tmp_path / "rows.csv"):
+        answer = call("results", finished, "--sql", query, "--csv", target)
+        assert answer.code == 2
+        assert answer.out == ""
+        assert re.fullmatch(
+            r"error: this table cannot be written as CSV: .*; use --parquet or --json\n", answer.err
+        )
+    assert list(tmp_path.iterdir()) == []
+    for form in ("--parquet", "--csv"):
+        assert call("results", finished, form, tmp_path / "rows").code == 0
+    assert len(json.loads(call("results", finished, "--sql", query, "--json").out)) == 3
+
+
+def test_pairs_are_counted_by_their_images(call: Call, photos: Path, tmp_path: Path) -> None:
+    words = ("-o", tmp_path / "results", "--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
+    file = tmp_path / "pairs.txt"
+    for pair in ("0.png 1.png", "1.png 2.png"):
+        file.write_text(pair)
+        answer = call("run", photos, *words, "--pairs", file)
+        assert answer.code == 0, answer.err
+    assert "1 combination on 2 pairs" in call("results", tmp_path / "results").out

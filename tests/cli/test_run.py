@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -68,15 +69,51 @@ def test_a_dry_run_knows_what_is_there(call: Call, photos: Path, finished: Path)
     assert re.search(r"rows +15, of which 12 are there already", answer.out)
 
 
+def gray_copy(photos: Path, folder: Path) -> Path:
+    from PIL import Image
+
+    folder.mkdir()
+    for path in photos.iterdir():
+        Image.open(path).convert("L").save(folder / path.name)
+    return folder
+
+
+def test_a_run_tells_what_gray_images_rule_out(call: Call, photos: Path, tmp_path: Path) -> None:
+    gray = gray_copy(photos, tmp_path / "gray")
+    words = ("run", gray, "-o", tmp_path / "results", "--workers", 1, "--limit", 2)
+    told = "left out: 2 combinations on 2 pairs, because LUCID needs three colour channels"
+
+    alone = call(*words, "--combinations", "ORB-LUCID-HAM-*")
+    assert alone.code == 0
+    assert told in alone.err
+    assert "nothing to measure: the images rule out all combinations" in alone.err
+    assert "there already" not in alone.err
+    assert re.search(r"rows +0: none", alone.out)
+
+    mixed = (*words, "--combinations", "ORB-LUCID-HAM-*,ORB-ORB-HAM-BF")
+    for outcome in ("measured 2 rows", "nothing to measure: all 2 rows are there already"):
+        answer = call(*mixed)
+        assert answer.code == 0
+        assert told in answer.err
+        assert outcome in answer.err
+
+
+def test_an_empty_file_among_the_images_is_an_error_of_its_pairs(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    images = tmp_path / "images"
+    shutil.copytree(photos, images)
+    (images / "1.png").write_bytes(b"")
+    words = ("run", images, "-o", tmp_path / "results", "--workers", 1)
+    answer = call(*words, "--combinations", "ORB-ORB-HAM-BF")
+    assert answer.code == 0
+    assert re.search(r"rows +3: error 2, ok 1", answer.out)
+
+
 def test_a_dry_run_tells_what_gray_images_rule_out(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:
-    from PIL import Image
-
-    gray = tmp_path / "gray"
-    gray.mkdir()
-    for path in photos.iterdir():
-        Image.open(path).convert("L").save(gray / path.name)
+    gray = gray_copy(photos, tmp_path / "gray")
     words = ("run", gray, "-o", tmp_path / "results", "--dry-run")
     answer = call(*words, "--combinations", "ORB-LUCID-HAM-BF,ORB-ORB-HAM-BF")
     assert "ORB-LUCID-HAM-BF on 3 pairs, because LUCID needs three colour channels" in answer.out

@@ -15,7 +15,8 @@ def row(combination: str, pair: int, status: str = "ok", **values: Any) -> dict[
     methods = zip(
         ("detector", "descriptor", "norm", "matcher"), combination.split("-"), strict=True
     )
-    return {**empty_row(), **dict(methods), "pair": pair, "status": status, **values}
+    images = {"dataset": "scene", "image_1": f"{pair}.png", "image_2": f"{pair + 1}.png"}
+    return {**empty_row(), **dict(methods), **images, "pair": pair, "status": status, **values}
 
 
 def table(*rows: dict[str, Any]) -> pl.DataFrame:
@@ -45,6 +46,16 @@ def test_medians_count_pairs_without_success_as_zero() -> None:
     assert best["inliers"].to_list() == [40, 90, 0]
     assert best["success_rate"].to_list() == pytest.approx([1, 2 / 3, 1 / 3])
     assert best["pairs"].to_list() == [3, 3, 3]
+
+
+def test_pairs_are_counted_by_their_images() -> None:
+    other = {"image_1": "a.png", "image_2": "b.png"}
+    rows = table(
+        row("ORB-ORB-HAM-BF", 0),
+        row("ORB-ORB-HAM-BF", 0, **other),  # the first pair of another run
+        row("ORB-ORB-HAM-BF", 7, **other),  # the same under another number
+    )
+    assert best_combinations(rows)["pairs"].to_list() == [2]
 
 
 def test_times_are_medians_where_they_were_measured() -> None:

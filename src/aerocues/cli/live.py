@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from aerocues.cli.progress import PlainLines, Tally, spoken_seconds
+from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
 
@@ -37,6 +37,9 @@ class LiveDisplay(Tally):
 
     def planned(self, plan: Plan) -> None:
         super().planned(plan)
+        if self.live:
+            for line in left_out(plan):  # stays above the display
+                self.live.console.print(line, soft_wrap=True, markup=False)
         self._draw(at_once=True)
 
     def working(self, activities: Sequence[Activity]) -> None:

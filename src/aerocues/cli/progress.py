@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from aerocues.cli.console import count
 from aerocues.evaluation.engine import Activity, Finished
-from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.plan import Exclusion, Plan
 from aerocues.evaluation.run import Observer
 
 SECONDS_BETWEEN_LINES = 10.0
@@ -26,6 +26,18 @@ def spoken_seconds(seconds: float) -> str:
     if whole < 3600:
         return f"{whole // 60} min {whole % 60:02d} s"
     return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+def left_out(plan: Plan) -> list[str]:
+    """What the images rule out: one line a reason."""
+    by_reason: dict[str, list[Exclusion]] = {}
+    for exclusion in plan.exclusions:
+        by_reason.setdefault(exclusion.reason, []).append(exclusion)
+    return [
+        f"left out: {count(len(found), 'combination')} on "
+        f"{count(max(exclusion.pairs for exclusion in found), 'pair')}, because {reason}"
+        for reason, found in by_reason.items()
+    ]
 
 
 @dataclass
@@ -102,6 +114,8 @@ class PlainLines(Tally):
     def planned(self, plan: Plan) -> None:
         super().planned(plan)
         self._line_time, self._line_share = self.clock(), self.share
+        for line in left_out(plan):
+            self._say(line)
         if not plan.rows_left:
             return
         present = f"; {plan.rows_present:,} rows are there already" if plan.rows_present else ""

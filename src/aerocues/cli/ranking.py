@@ -26,7 +26,7 @@ def _seconds(value: float | None) -> str:
 def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
     from rich.text import Text
 
-    from aerocues.evaluation.summary import best_combinations
+    from aerocues.evaluation.summary import PAIR, best_combinations
 
     ranked = best_combinations(rows)
     best = ranked.head(top)
@@ -49,7 +49,7 @@ def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
             *([f"{row['pairs']:,}"] if uneven else []),
         )
     shown = f"best {len(best)} of " if len(best) < len(ranked) else ""
-    pairs = count(rows["pair"].n_unique(), "pair")
+    pairs = count(rows.select(PAIR).n_unique(), "pair")
     title = f"{dataset}: {shown}{count(len(ranked), 'combination')} on {pairs}"
     console.print(Text(title, style="bold"))
     print_table(console, output)

@@ -53,7 +53,7 @@ def results(
 
 
 def _write(table: pl.DataFrame, target: str, form: str) -> None:
-    from aerocues.evaluation.export import WRITERS, export_table
+    from aerocues.evaluation.export import export_table, table_content
 
     if target != STANDARD_OUTPUT:
         export_table(table, Path(target), form)
@@ -61,7 +61,7 @@ def _write(table: pl.DataFrame, target: str, form: str) -> None:
         return
     if form == "parquet" and sys.stdout.isatty():
         raise typer.BadParameter("Parquet is no text; name a file or redirect the output")
-    WRITERS[form](table, sys.stdout.buffer)
+    sys.stdout.buffer.write(table_content(table, form))
     if form == "json":
         sys.stdout.buffer.write(b"\n")
     sys.stdout.buffer.flush()

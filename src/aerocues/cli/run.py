@@ -158,8 +158,10 @@ def _report_end(tally: Tally) -> None:
     if tally.rows_measured:
         measured = count(tally.rows_measured, "row")
         line = f"measured {measured} in {spoken_seconds(tally.elapsed)}"
-    else:
+    elif tally.rows_stored:
         line = f"nothing to measure: all {count(tally.rows_stored, 'row')} are there already"
+    else:
+        line = "nothing to measure: the images rule out all combinations that were chosen"
     sys.stderr.write(f"{line}\n\n")
 
 
@@ -173,7 +175,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     print_ranking(table, top)
     console = standard_output()
     counts = table["status"].value_counts(sort=True).iter_rows()
-    by_status = ", ".join(f"{status} {number:,}" for status, number in counts)
+    by_status = ", ".join(f"{status} {number:,}" for status, number in counts) or "none"
     folder = shlex.quote(str(results.folder))
     for line in (
         f"\nrows     {len(table):,}: {by_status}",

@@ -20,6 +20,22 @@ WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
 }
 
 
+def table_content(table: pl.DataFrame, form: str) -> memoryview:
+    """A table as the content of a file; StoreError where it has no place in that form."""
+    import polars as pl
+
+    content = io.BytesIO()
+    try:
+        WRITERS[form](table, content)
+    except pl.exceptions.PolarsError as error:
+        others = " or ".join(f"--{name}" for name in WRITERS if name != form)
+        reason = " ".join(str(error).split())
+        raise StoreError(
+            f"this table cannot be written as {form.upper()}: {reason}; use {others}"
+        ) from error
+    return content.getbuffer()
+
+
 def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     """Write a table to a file; one that is there is replaced, whole or not at all.
 
@@ -33,19 +49,18 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     Raises
     ------
     StoreError
-        If it cannot be written.
+        If it cannot be written, or the form has no place for what it holds.
     """
+    # Not to the file at once: polars has errors of its own for a disk that is full.
+    content = table_content(table, form)
     path = target.expanduser().resolve()  # a link stays a link
     is_special = path.exists() and not path.is_file() and not path.is_dir()
     beside = path if is_special else path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         if path.is_dir():
             raise IsADirectoryError(None, "it is a folder")
-        # Not to the file at once: polars has errors of its own for a disk that is full.
-        content = io.BytesIO()
-        WRITERS[form](table, content)
         with beside.open("wb") as file:
-            file.write(content.getbuffer())
+            file.write(content)
         if not is_special:
             beside.replace(path)
     except OSError as error:

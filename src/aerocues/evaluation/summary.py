@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import polars as pl
 
+PAIR = ("dataset", "image_1", "image_2")
 METHODS = ("detector", "descriptor", "norm", "matcher")
 
 
@@ -44,7 +45,7 @@ def best_combinations(table: pl.DataFrame, top: int | None = None) -> pl.DataFra
     return (
         table.group_by(pl.concat_str(METHODS, separator="-").alias("combination"))
         .agg(
-            pl.len().alias("pairs"),
+            pl.struct(PAIR).n_unique().alias("pairs"),
             succeeded.mean().alias("success_rate"),
             counted("precision"),
             counted("matches"),
