@@ -213,7 +213,7 @@ def run_command(folder: Path, command: str, shown: str, *, exact: bool) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)], ids=identify)
 def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path) -> None:
     write_stand_in_data(tmp_path)
@@ -232,7 +232,7 @@ def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(1200)
 def test_the_demonstration_ends_in_a_table(tmp_path: Path) -> None:
     done = subprocess.run(
         ["make", "--silent", "demo", f"DEMO_RESULTS={tmp_path / 'results'}"],
