@@ -6,6 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from aerocues.evaluation.clock import Clock
+from aerocues.evaluation.ground_truth import transfer
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.evaluation.verification import (
     Model,
@@ -66,7 +67,7 @@ def verify(
 ) -> Verdict:
     """Verify matches of which those in front have the smallest descriptor distance."""
     protocol = MeasurementProtocol(seed=seed, verification=SETTINGS, chance=chance)
-    verifier = Verifier(protocol, Clock(memory=False))
+    verifier = Verifier(protocol, "epipolar", Clock(memory=False))
     return verifier.verify(points_1, points_2, np.arange(len(points_1)))
 
 
@@ -119,7 +120,7 @@ def test_settings_reach_opencv() -> None:
     counts = []
     for threshold in (0.5, 1.5, 3.0):
         protocol = MeasurementProtocol(verification=Verification(threshold), chance=None)
-        verifier = Verifier(protocol, Clock(memory=False))
+        verifier = Verifier(protocol, "epipolar", Clock(memory=False))
         counts.append(verifier.verify(first, second, np.arange(200)).model.count)
     assert counts[0] < counts[1] < counts[2]
 
@@ -235,11 +236,44 @@ def test_guided_sampling_finds_few_true_matches_that_come_first() -> None:
     assert verdict.model.inliers[:30].mean() > 0.8
     shuffled = np.random.default_rng(0).permutation(180)
     protocol = MeasurementProtocol(verification=SETTINGS)
-    verifier = Verifier(protocol, Clock(memory=False))
+    verifier = Verifier(protocol, "epipolar", Clock(memory=False))
     mixed = verifier.verify(first[shuffled], second[shuffled], np.argsort(shuffled))
     assert mixed.passed
     # Inliers are told in the order of the matches, not in that of their distances.
     assert mixed.model.inliers[np.argsort(shuffled)][:30].mean() > 0.8
+
+
+def views_of_a_plane(true: int, wrong: int, seed: int) -> tuple[Points, Points, Points]:
+    """Matched points of two views of a plane, the true ones first, and the homography."""
+    generator = np.random.default_rng(seed)
+    homography = np.array([[0.9, 0.2, 30], [-0.15, 1.1, 40], [2e-4, -1e-4, 1]])
+    first = generator.uniform(0, 800, (true + wrong, 2))
+    second = transfer(first, homography)
+    second[true:] = generator.uniform(0, 800, (wrong, 2))
+    return first.astype(np.float32), second.astype(np.float32), homography
+
+
+def test_few_true_matches_of_a_plane_are_found_by_its_homography() -> None:
+    """One in forty, among the nearest 80 descriptors: mostly too few for a fundamental matrix."""
+    protocol = MeasurementProtocol(verification=SETTINGS)
+    verifier = Verifier(protocol, "homography", Clock(memory=False))
+    found_by = []
+    for seed in range(5):
+        first, second, homography = views_of_a_plane(24, 936, seed)
+        generator = np.random.default_rng(seed)
+        order = np.concatenate([generator.permutation(80), 80 + generator.permutation(880)])
+        verdict = verifier.verify(first, second, order)
+        assert verdict.passed
+        found_by.append(verdict.sampling)
+        if verdict.sampling == "homography":
+            assert verdict.model.inliers[:24].all()
+            assert verdict.model.count < 40
+            assert verdict.model.matrix is not None
+            moved = transfer(first[:24], verdict.model.matrix)
+            np.testing.assert_allclose(moved, transfer(first[:24], homography), atol=1.5)
+        wrong_1, wrong_2, _ = views_of_a_plane(0, 960, seed)
+        assert not verifier.verify(wrong_1, wrong_2, order).passed
+    assert "homography" in found_by
 
 
 def test_the_chance_test_is_seeded_and_counts_as_it_says() -> None:

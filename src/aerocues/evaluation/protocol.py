@@ -42,12 +42,16 @@ class ChanceTest:
     With few right matches among many, 1000 uniform samples seldom contain one that is all right.
     A model that does not pass is therefore looked for once more with guided sampling (PROSAC, Chum
     and Matas, CVPR 2005: the matches with the smallest descriptor distance first) and passes if
-    it exceeds `guided_factor` times what guided sampling finds in the shuffled matches.
+    it exceeds `guided_factor` times what guided sampling finds in the shuffled matches. Where the
+    images are known to show a plane or to be taken from one place, a homography, whose samples
+    are smaller, is looked for last in the same way.
     """
 
     shuffles: int = 5
     factor: float = 1.4
     guided_factor: float = 1.3
+    homography_factor: float = 1.4
+    homography_iterations: int = 5000
 
 
 @dataclass(frozen=True)

@@ -57,13 +57,13 @@ COUNTS: tuple[Column, ...] = (
     _count("keypoints_1", "keypoints of image 1 with a descriptor; without any, those detected"),
     _count("keypoints_2", "keypoints of image 2 with a descriptor; without any, those detected"),
     _count("matches", "mutual matches"),
-    _count("inliers", "matches that agree with the fundamental matrix"),
+    _count("inliers", "matches that agree with the model: the fundamental matrix, see sampling"),
     Column("chance_inliers", "float", "count", "mean inliers over the shuffled matches"),
     _count("chance_inliers_max", "largest number of inliers over the shuffled matches"),
     _text(
         "sampling",
-        "how samples were drawn: uniform, or guided by distance where uniform ones found no model "
-        "better than chance",
+        "how the model was found: uniform; guided (by distance) where that found none better than "
+        "chance; homography where only that did (homography data; its inliers are then counted)",
     ),
     _count("homography_inliers", "matches that agree with the homography (homography data)"),
 )

@@ -16,7 +16,7 @@ from aerocues.evaluation.features import Described, ImageFeatures, run_stage
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.schema import PIXEL_THRESHOLDS
 from aerocues.evaluation.unit import Context, StageCall
-from aerocues.evaluation.verification import IndexArray, Model, Verifier, estimate_homography
+from aerocues.evaluation.verification import IndexArray, Verifier
 from aerocues.methods.arrays import Float32Array, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
@@ -50,7 +50,7 @@ class TwoViewMeasurement:
         self._clock = clock
         self._announce = announce
         self._matchers: dict[tuple[str, str], MatcherStage] = {}
-        self._verifier = Verifier(context.protocol, clock)
+        self._verifier = Verifier(context.protocol, context.dataset.geometry, clock)
         self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
 
     def begin_pair(self) -> None:
@@ -128,20 +128,16 @@ class TwoViewMeasurement:
             )
         row["gt_repeatability"] = self._repeatabilities[same]
         model = run_stage(
-            "estimating a homography", lambda: self._homography(row["sampling"], found)
+            "estimating a homography",
+            lambda: self._verifier.homography(
+                found.points_1, found.points_2, found.order, row["sampling"] or "uniform"
+            ),
         )
         row["homography_inliers"] = model.count
         error = ground_truth.corner_error(model.matrix, truth, pixels_1)
         row["homography_error"] = error
         for threshold in PIXEL_THRESHOLDS:
             row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)
-
-    def _homography(self, sampling: str | None, found: Matched) -> Model:
-        """A homography from samples drawn as for the fundamental matrix."""
-        if sampling != "guided":
-            return estimate_homography(found.points_1, found.points_2, self._verifier.uniform)
-        first, second = (points[found.order] for points in (found.points_1, found.points_2))
-        return estimate_homography(first, second, self._verifier.guided)
 
 
 def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:

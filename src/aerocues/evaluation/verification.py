@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.datasets.dataset import Geometry
 from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.methods.arrays import Float32Array
@@ -101,9 +102,10 @@ class Verdict:
     Parameters
     ----------
     model : Model
-        The fundamental matrix; its inliers are in the order of the matches that were given.
-    sampling : {"uniform", "guided"}
-        How the samples were drawn that gave the model.
+        The model; its inliers are in the order of the matches that were given.
+    sampling : {"uniform", "guided", "homography"}
+        How it was found: a fundamental matrix from uniform or from guided samples, or a homography
+        from guided ones.
     chance_mean, chance_max : float, int or None
         Inliers that shuffled matches give; None where that was not asked.
     passed : bool
@@ -120,17 +122,52 @@ class Verdict:
     time: StageTime
 
 
-class Verifier:
-    """Estimates fundamental matrices under a protocol."""
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One way to look for a model, and by what factor it must beat chance; None: not asked."""
 
-    def __init__(self, protocol: MeasurementProtocol, clock: Clock) -> None:
+    sampling: str
+    find: Callable[..., Any]
+    parameters: Any
+    factor: float | None
+
+
+def looks(protocol: MeasurementProtocol, geometry: Geometry) -> tuple[Look, ...]:
+    """The ways to look for a model, in order; the next one is tried where one finds chance."""
+    settings, seed, chance = protocol.verification, protocol.seed, protocol.chance
+    uniform = magsac_parameters(settings, seed=seed)
+    if chance is None:
+        return (Look("uniform", cv2.findFundamentalMat, uniform, None),)
+    guided = magsac_parameters(settings, guided=True, seed=seed)
+    found = (
+        Look("uniform", cv2.findFundamentalMat, uniform, chance.factor),
+        Look("guided", cv2.findFundamentalMat, guided, chance.guided_factor),
+    )
+    if geometry != "homography":
+        return found
+    longer = replace(settings, max_iterations=chance.homography_iterations)
+    last = magsac_parameters(longer, guided=True, seed=seed)
+    return (*found, Look("homography", cv2.findHomography, last, chance.homography_factor))
+
+
+class Verifier:
+    """Estimates and judges models of two views under a protocol.
+
+    Parameters
+    ----------
+    protocol : MeasurementProtocol
+    geometry : {"homography", "epipolar"}
+        Of the dataset.
+    clock : Clock
+    """
+
+    def __init__(self, protocol: MeasurementProtocol, geometry: Geometry, clock: Clock) -> None:
         self._protocol = protocol
         self._clock = clock
-        self.uniform = magsac_parameters(protocol.verification, seed=protocol.seed)
-        self.guided = magsac_parameters(protocol.verification, guided=True, seed=protocol.seed)
+        self._looks = looks(protocol, geometry)
 
     def verify(self, points_1: Float32Array, points_2: Float32Array, order: IndexArray) -> Verdict:
-        """Estimate and judge a fundamental matrix.
+        """Estimate and judge a model.
 
         Parameters
         ----------
@@ -139,59 +176,66 @@ class Verifier:
         order : (M,) int
             The matches by descriptor distance, the smallest first.
 
+        Returns
+        -------
+        Verdict
+            Of the first look that beats chance, else of the very first; with the time of all.
+
         Raises
         ------
         cv2.error
             If OpenCV refuses the points.
         """
-        chance = self._protocol.chance
-        factor = None if chance is None else chance.factor
-        first = self._look(points_1, points_2, self.uniform, factor, "uniform")
-        if first.passed or chance is None:
-            return first
-        second = self._look(
-            np.ascontiguousarray(points_1[order]),
-            np.ascontiguousarray(points_2[order]),
-            self.guided,
-            chance.guided_factor,
-            "guided",
-        )
-        time = first.time + second.time
-        if not second.passed:
-            return replace(first, time=time)
-        inliers = np.zeros(len(order), bool)
-        inliers[order] = second.model.inliers
-        return replace(second, model=Model(second.model.matrix, inliers), time=time)
+        verdicts: list[Verdict] = []
+        for look in self._looks:
+            verdicts.append(self._look(look, points_1, points_2, order))
+            if verdicts[-1].passed:
+                break
+        chosen = verdicts[-1] if verdicts[-1].passed else verdicts[0]
+        time = verdicts[0].time
+        for verdict in verdicts[1:]:
+            time += verdict.time
+        return replace(chosen, time=time)
+
+    def homography(
+        self, points_1: Float32Array, points_2: Float32Array, order: IndexArray, sampling: str
+    ) -> Model:
+        """A homography, with the sampling that found the model of the same matches."""
+        if sampling != "uniform":
+            last = self._looks[-1]
+            return self._look(replace(last, factor=None), points_1, points_2, order).model
+        return estimate_homography(points_1, points_2, self._looks[0].parameters)
 
     def _look(
-        self,
-        points_1: Float32Array,
-        points_2: Float32Array,
-        parameters: Any,
-        factor: float | None,
-        sampling: str,
+        self, look: Look, points_1: Float32Array, points_2: Float32Array, order: IndexArray
     ) -> Verdict:
         count = len(points_1)
+        if look.sampling != "uniform":
+            points_1, points_2 = points_1[order], points_2[order]
         cv2.setRNGSeed(self._protocol.seed)
         raw, time = self._clock.time(
-            lambda: _estimate(cv2.findFundamentalMat, points_1, points_2, parameters)
+            lambda: _estimate(look.find, points_1, points_2, look.parameters)
         )
-        matrix, mask = raw
-        model = _checked(matrix, mask, count)
-        if factor is None:
-            return Verdict(model, sampling, None, None, model.matrix is not None, time)
-        shuffled = self._shuffled_counts(points_1, points_2, parameters)
-        passed = model.matrix is not None and model.count > factor * max(shuffled)
-        return Verdict(model, sampling, float(np.mean(shuffled)), max(shuffled), passed, time)
+        model = _checked(*raw, count)
+        counts = [] if look.factor is None else self._shuffled_counts(look, points_1, points_2)
+        passed = model.matrix is not None
+        if look.factor is not None:
+            passed = passed and model.count > look.factor * max(counts)
+        if look.sampling != "uniform":
+            inliers = np.zeros(count, bool)
+            inliers[order] = model.inliers
+            model = Model(model.matrix, inliers)
+        mean, largest = (float(np.mean(counts)), max(counts)) if counts else (None, None)
+        return Verdict(model, look.sampling, mean, largest, passed, time)
 
     def _shuffled_counts(
-        self, points_1: Float32Array, points_2: Float32Array, parameters: Any
+        self, look: Look, points_1: Float32Array, points_2: Float32Array
     ) -> list[int]:
         chance = self._protocol.chance or ChanceTest()
         counts = []
         for shuffle in range(chance.shuffles):
             generator = np.random.default_rng((self._protocol.seed, shuffle))
-            shuffled = np.ascontiguousarray(points_2[generator.permutation(len(points_2))])
-            matrix, mask = _estimate(cv2.findFundamentalMat, points_1, shuffled, parameters)
-            counts.append(_checked(matrix, mask, len(points_1)).count)
+            shuffled = points_2[generator.permutation(len(points_2))]
+            raw = _estimate(look.find, points_1, shuffled, look.parameters)
+            counts.append(_checked(*raw, len(points_1)).count)
         return counts
