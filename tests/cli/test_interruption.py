@@ -82,5 +82,5 @@ def test_a_worker_that_is_just_starting_is_not_left_behind(photos: Path, tmp_pat
     _, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in err
-    _, alive = psutil.wait_procs(workers, timeout=1)
+    _, alive = psutil.wait_procs(workers, timeout=15)
     assert alive == []

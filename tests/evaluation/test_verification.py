@@ -243,7 +243,9 @@ def test_guided_sampling_finds_few_true_matches_that_come_first() -> None:
     assert mixed.model.inliers[np.argsort(shuffled)][:30].mean() > 0.8
 
 
-def views_of_a_plane(true: int, wrong: int, seed: int) -> tuple[Points, Points, Points]:
+def views_of_a_plane(
+    true: int, wrong: int, seed: int
+) -> tuple[Points, Points, NDArray[np.float64]]:
     """Matched points of two views of a plane, the true ones first, and the homography."""
     generator = np.random.default_rng(seed)
     homography = np.array([[0.9, 0.2, 30], [-0.15, 1.1, 40], [2e-4, -1e-4, 1]])

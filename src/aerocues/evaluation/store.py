@@ -73,7 +73,7 @@ class Store:
         StoreError
             If another process is writing to the folder.
         """
-        with (self.folder / LOCK).open("w") as file:
+        with self._lock_file() as file:
             if not _locked(file):
                 raise StoreError(
                     f"another run is writing to {self.folder}; wait for it or give -o another "
@@ -81,6 +81,15 @@ class Store:
                 )
             self._remove_leftovers()
             yield
+
+    def _lock_file(self) -> IO[str]:
+        try:
+            return (self.folder / LOCK).open("w")
+        except OSError as error:
+            raise StoreError(
+                f"cannot write to {self.folder}: {error.strerror}; make room or access, or choose "
+                "another folder with -o"
+            ) from error
 
     @classmethod
     def open(cls, folder: Path) -> Store:

@@ -14,9 +14,6 @@ import time
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from aerocues.evaluation.evaluator import Evaluator
-from aerocues.evaluation.heartbeat import Heartbeat
-
 PARENT_CHECK_SECONDS = 0.5
 
 
@@ -30,16 +27,20 @@ def _limit_memory(megabytes: int) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
 
 
-def _end_with_parent() -> None:
+def _end_with_parent(parent: int) -> None:
     """End this process soon after its parent, however that ended: nobody waits for the rows."""
-    parent = os.getppid()
     while os.getppid() == parent:
         time.sleep(PARENT_CHECK_SECONDS)
     os._exit(1)
 
 
-def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
+def serve(pipe: Connection, page: Path) -> None:
     """Evaluate units until the parent closes the pipe."""
+    # Takes long enough for the parent to be gone meanwhile: the watch over it stands already.
+    from aerocues.evaluation.evaluator import Evaluator
+    from aerocues.evaluation.heartbeat import Heartbeat
+
+    heartbeat = Heartbeat(page)
     context = pipe.recv()
     evaluator = Evaluator(context, heartbeat.announce)
     pipe.send("ready")
@@ -54,16 +55,20 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
 
 
 def main() -> None:
-    """Entry point: file descriptor of the pipe, heartbeat file, memory limit in MB, core or -1."""
-    descriptor, page, megabytes, core = sys.argv[1:]
+    """Entry point; `WorkerProcess` gives the arguments.
+
+    They are the file descriptor of the pipe, the heartbeat file, the memory limit in MB, the core
+    to stay on or -1, and the parent's process id.
+    """
+    descriptor, page, megabytes, core, parent = sys.argv[1:]
     # Ctrl-C reaches the whole process group; the parent decides when a worker ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {int(core)})
     _limit_memory(int(megabytes))
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_end_with_parent, args=[int(parent)], daemon=True).start()
     with Connection(int(descriptor)) as pipe:
-        serve(pipe, Heartbeat(Path(page)))
+        serve(pipe, Path(page))
 
 
 if __name__ == "__main__":

@@ -51,7 +51,9 @@ class WorkerProcess:
         self._errors = (Path(self._folder.name) / "stderr").open("w+b")
         self.pipe, theirs = Pipe()
         core = _core(number) if pinned else -1
-        arguments = [str(theirs.fileno()), str(page), str(memory_limit_mb), str(core)]
+        arguments = [
+            str(value) for value in (theirs.fileno(), page, memory_limit_mb, core, os.getpid())
+        ]
         self._process = subprocess.Popen(
             [sys.executable, "-m", "aerocues.evaluation.worker", *arguments],
             pass_fds=[theirs.fileno()],

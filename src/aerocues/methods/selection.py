@@ -47,8 +47,8 @@ def _unmatched(pattern: str, methods: Methods) -> SelectionError:
     if matched:
         first = matched[0]
         reason = (
-            why_incompatible(first, methods)
-            or why_unavailable(first, methods)
+            why_unavailable(first, methods)
+            or why_incompatible(first, methods)
             or f"{why_meaningless(first, methods)} (--all runs it all the same)"
         )
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
