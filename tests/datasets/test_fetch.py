@@ -232,6 +232,8 @@ def test_an_archive_placed_by_hand_is_used_and_kept(
         (tar({"/tmp/evil.txt": b"", "H1to2p": b""}), "outside"),
         (zipped({"../evil.txt": b"", "H1to2p": b""}), "outside"),
     ],
+    # Archives hold the time: without names, two processes would collect different tests.
+    ids=["text", "cut off", "no sequence", "above", "absolute", "above in a zip"],
 )
 def test_bad_archives_leave_nothing_behind(
     fetch_here: Fetch, site: Site, tmp_path: Path, content: bytes, said: str
