@@ -68,13 +68,10 @@ def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     if not len(new):
         return old
     first = new.row(0, named=True)
-    dataset, settings, reading = (
-        first["dataset"],
-        first["settings_key"],
-        first["dataset_key"],
+    same = pl.col("dataset") == first["dataset"]
+    continued = (pl.col("settings_key") == first["settings_key"]) & (
+        pl.col("dataset_key") == first["dataset_key"]
     )
-    same = pl.col("dataset") == dataset
-    continued = (pl.col("settings_key") == settings) & (pl.col("dataset_key") == reading)
     others = old.filter(~same)
     kept = old.filter(same & continued).join(new, on=[*PAIR, *METHODS], how="anti")
     numbers = new.select(*PAIR, "pair", "sequence").unique(PAIR)

@@ -1,4 +1,4 @@
-"""A results folder: Parquet parts, one a finished unit, and run.json."""
+"""A results folder: parts with the measured rows, the plan of all rows, and run.json."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class Store:
             path.unlink(missing_ok=True)
 
     def write_rows(self, name: str, rows: Sequence[Row]) -> None:
-        """Store the rows of a finished unit, all or none.
+        """Store the rows of a finished part of a unit, all or none.
 
         Raises
         ------

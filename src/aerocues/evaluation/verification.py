@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Geometry
 from aerocues.evaluation.clock import Clock, StageTime
-from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
+from aerocues.evaluation.protocol import MeasurementProtocol, Verification
 from aerocues.methods.arrays import Float32Array
 
 MINIMUM_FOR_HOMOGRAPHY = 4
@@ -124,12 +124,16 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One way to look for a model, and by what factor it must beat chance; None: not asked."""
+    """One way to look for a model, and by what factor it must beat how many shuffled sets.
+
+    Without shuffles, chance is not asked about.
+    """
 
     sampling: str
     find: Callable[..., Any]
     parameters: Any
-    factor: float | None
+    factor: float = 0.0
+    shuffles: int = 0
 
 
 def looks(protocol: MeasurementProtocol, geometry: Geometry) -> tuple[Look, ...]:
@@ -137,17 +141,18 @@ def looks(protocol: MeasurementProtocol, geometry: Geometry) -> tuple[Look, ...]
     settings, seed, chance = protocol.verification, protocol.seed, protocol.chance
     uniform = magsac_parameters(settings, seed=seed)
     if chance is None:
-        return (Look("uniform", cv2.findFundamentalMat, uniform, None),)
+        return (Look("uniform", cv2.findFundamentalMat, uniform),)
     guided = magsac_parameters(settings, guided=True, seed=seed)
     found = (
-        Look("uniform", cv2.findFundamentalMat, uniform, chance.factor),
-        Look("guided", cv2.findFundamentalMat, guided, chance.guided_factor),
+        Look("uniform", cv2.findFundamentalMat, uniform, chance.factor, chance.shuffles),
+        Look("guided", cv2.findFundamentalMat, guided, chance.guided_factor, chance.shuffles),
     )
     if geometry != "homography":
         return found
     longer = replace(settings, max_iterations=chance.homography_iterations)
     last = magsac_parameters(longer, guided=True, seed=seed)
-    return (*found, Look("homography", cv2.findHomography, last, chance.homography_factor))
+    factor = chance.homography_factor
+    return (*found, Look("homography", cv2.findHomography, last, factor, chance.shuffles))
 
 
 class Verifier:
@@ -203,7 +208,7 @@ class Verifier:
         """A homography, with the sampling that found the model of the same matches."""
         if sampling != "uniform":
             last = self._looks[-1]
-            return self._look(replace(last, factor=None), points_1, points_2, order).model
+            return self._look(replace(last, shuffles=0), points_1, points_2, order).model
         return estimate_homography(points_1, points_2, self._looks[0].parameters)
 
     def _look(
@@ -217,10 +222,8 @@ class Verifier:
             lambda: _estimate(look.find, points_1, points_2, look.parameters)
         )
         model = _checked(*raw, count)
-        counts = [] if look.factor is None else self._shuffled_counts(look, points_1, points_2)
-        passed = model.matrix is not None
-        if look.factor is not None:
-            passed = passed and model.count > look.factor * max(counts)
+        counts = self._shuffled_counts(look, points_1, points_2)
+        passed = model.matrix is not None and model.count > look.factor * max(counts, default=0)
         if look.sampling != "uniform":
             inliers = np.zeros(count, bool)
             inliers[order] = model.inliers
@@ -231,9 +234,8 @@ class Verifier:
     def _shuffled_counts(
         self, look: Look, points_1: Float32Array, points_2: Float32Array
     ) -> list[int]:
-        chance = self._protocol.chance or ChanceTest()
         counts = []
-        for shuffle in range(chance.shuffles):
+        for shuffle in range(look.shuffles):
             generator = np.random.default_rng((self._protocol.seed, shuffle))
             shuffled = points_2[generator.permutation(len(points_2))]
             raw = _estimate(look.find, points_1, shuffled, look.parameters)
