@@ -49,8 +49,8 @@ class ChanceTest:
 
     shuffles: int = 5
     factor: float = 1.4
-    guided_factor: float = 1.3
-    homography_factor: float = 1.4
+    guided_factor: float = 1.4
+    homography_factor: float = 1.5
     homography_iterations: int = 5000
 
 
