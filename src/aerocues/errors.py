@@ -29,3 +29,7 @@ class StoreError(AerocuesError):
 
 class EngineError(AerocuesError):
     """The workers that measure could not be started or kept alive."""
+
+
+class ScoreError(AerocuesError):
+    """A table cannot be scored or compared as asked."""

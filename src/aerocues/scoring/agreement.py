@@ -1,0 +1,114 @@
+"""How other methods of multi-criteria decision making rank the same alternatives.
+
+Their implementations are those of pymcdm, independent of the ones here. All get the normalised
+criteria before the power alpha and the weights of the score.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import MethodUnavailableError
+from aerocues.scoring.correlation import rank_correlation
+from aerocues.scoring.cues import Scores
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RankingMethod:
+    """One method.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        Its class in pymcdm.
+    arguments : tuple
+        Of that class.
+    higher_is_better : bool
+        Whether higher preferences are the better ones.
+    needs_costs : bool
+        Whether costs stay costs, one at least, where the others get all criteria as benefits.
+    """
+
+    name: str
+    kind: str
+    arguments: tuple[Any, ...] = ()
+    higher_is_better: bool = True
+    needs_costs: bool = False
+
+
+RANKING_METHODS: tuple[RankingMethod, ...] = (
+    RankingMethod("TOPSIS", "TOPSIS"),
+    RankingMethod("VIKOR", "VIKOR", higher_is_better=False),
+    RankingMethod("PROMETHEE II", "PROMETHEE_II", ("usual",)),
+    RankingMethod("COPRAS", "COPRAS", needs_costs=True),
+    RankingMethod("MOORA", "MOORA", needs_costs=True),
+)
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Spearman's rank correlation of CUES with other methods.
+
+    Attributes
+    ----------
+    names : tuple of str
+        CUES first.
+    correlation : (methods, methods) float64
+    best : tuple of str
+        The best alternative of each.
+    """
+
+    names: tuple[str, ...]
+    correlation: Array
+    best: tuple[str, ...]
+
+
+def agreement(scores: Scores) -> Agreement:
+    """Rank the alternatives by other methods and compare.
+
+    Raises
+    ------
+    MethodUnavailableError
+        If pymcdm is not installed.
+    """
+    taking_part = np.flatnonzero(~np.isnan(scores.scores))
+    matrix = scores.normalised[taking_part] ** (1 / scores.settings.alpha)
+    # A constant criterion tells nothing, and their normalisations divide by its range.
+    kept = (scores.weights > 0) & (np.ptp(matrix, axis=0) > 0)
+    weights, is_cost = scores.weights[kept], scores.table.is_cost[kept]
+    rows = [scores.scores[taking_part]]
+    rows += [_preferences(method, matrix[:, kept], weights, is_cost) for method in RANKING_METHODS]
+    names = [scores.table.alternatives[position] for position in taking_part]
+    return Agreement(
+        names=("CUES", *(method.name for method in RANKING_METHODS)),
+        correlation=rank_correlation(np.stack(rows)),
+        best=tuple("" if np.isnan(row).all() else names[int(np.nanargmax(row))] for row in rows),
+    )
+
+
+def _preferences(
+    method: RankingMethod, matrix: Array, weights: Array, is_cost: NDArray[np.bool_]
+) -> Array:
+    """Preferences, higher being better; NaN where the method is not defined."""
+    try:
+        from pymcdm import methods
+    except ImportError as error:
+        raise MethodUnavailableError(
+            f"agreement with other methods needs pymcdm ({error}); install aerocues[validation]"
+        ) from error
+    if not len(weights) or (method.needs_costs and not is_cost.any()):
+        return np.full(len(matrix), np.nan)
+    costs = is_cost & method.needs_costs
+    values = np.where(costs, 1 - matrix, matrix)
+    ranking = getattr(methods, method.kind)(*method.arguments)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = ranking(values, weights / weights.sum(), np.where(costs, -1, 1))
+    preferences = np.asarray(found, dtype=np.float64)
+    return preferences if method.higher_is_better else -preferences

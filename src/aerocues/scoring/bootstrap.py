@@ -1,0 +1,100 @@
+"""How sure a score is: what it would have been on other repeats of the same kind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.cues import Scores, rank, score_batch
+from aerocues.scoring.normalisation import Sums
+from aerocues.scoring.resampling import Unit, draws, unit_of_resampling
+
+Array = NDArray[np.float64]
+BATCH_ELEMENTS = 2_000_000
+CONFIDENCE = 0.95
+RESAMPLES = 1000
+
+
+@dataclass(frozen=True)
+class Bootstrap:
+    """Scores of resamples.
+
+    Attributes
+    ----------
+    scores, ranks : (resamples, alternatives) float64
+        NaN where an alternative had no valid repeat in a resample.
+    weights : (resamples, criteria) float64
+    unit : {"block", "repeat"}
+        What was drawn.
+    """
+
+    scores: Array
+    ranks: Array
+    weights: Array
+    unit: Unit
+
+    def score_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Lower and upper end, (alternatives,) each, of the percentile interval of the score."""
+        return _interval(self.scores, confidence)
+
+    def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Best and worst rank, (alternatives,) each, of the percentile interval of the rank."""
+        low, high = _interval(self.ranks, confidence)
+        return np.floor(low), np.ceil(high)
+
+    def probability_in_top(self, places: int = 1) -> Array:
+        """(alternatives,) share of the resamples in which each ranks among the first `places`."""
+        return np.asarray((self.ranks <= places).mean(axis=0))
+
+
+def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Bootstrap:
+    """Score resamples of the repeats.
+
+    Repeats, or whole blocks of them, are drawn with replacement, the same for all alternatives,
+    and everything is estimated anew: bounds, means and weights.
+
+    Parameters
+    ----------
+    scores : Scores
+        Of the table as it is.
+    resamples : int
+        2 or more.
+    seed : int
+
+    Raises
+    ------
+    ScoreError
+        If there are fewer than 2 resamples.
+    """
+    if resamples < 2:
+        raise ScoreError(f"{resamples} resamples are too few; take 2 or more, such as 1000")
+    table, sums = scores.table, Sums(scores.table)
+    size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)
+    found = [
+        score_batch(sums.means(counts), table, scores.settings)
+        for counts in draws(table, resamples, seed, max(1, BATCH_ELEMENTS // size))
+    ]
+    values = np.concatenate([batch.scores for batch in found])
+    # What has no score in the table takes no part.
+    values[:, np.isnan(scores.scores)] = np.nan
+    return Bootstrap(
+        scores=values,
+        ranks=rank(values),
+        weights=np.concatenate([batch.weights for batch in found]),
+        unit=unit_of_resampling(table),
+    )
+
+
+def _interval(values: Array, confidence: float) -> tuple[Array, Array]:
+    tail = (1 - confidence) / 2
+    ends = np.array([tail, 1 - tail])
+    whole = ~np.isnan(values).any(axis=0)
+    some = ~np.isnan(values).all(axis=0) & ~whole
+    result = np.full((2, values.shape[1]), np.nan)
+    result[:, whole] = np.quantile(values[:, whole], ends, axis=0)
+    if some.any():
+        result[:, some] = np.nanquantile(values[:, some], ends, axis=0)
+    return result[0], result[1]

@@ -1,0 +1,138 @@
+"""What alternatives are judged by: one row a criterion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from aerocues.errors import ScoreError
+
+Better = Literal["higher", "lower"]
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One criterion.
+
+    Attributes
+    ----------
+    name : str
+    better : {"higher", "lower"}
+        Direction: a benefit or a cost.
+    column : str
+        A column of the measurements, or a SQL expression of columns; the name by default.
+    reconstruction : bool
+        Whether it has one value an alternative, from a 3D reconstruction, not one a pair.
+    description : str
+    """
+
+    name: str
+    better: Better = "higher"
+    column: str = ""
+    reconstruction: bool = False
+    description: str = ""
+
+    @property
+    def source(self) -> str:
+        """The column or expression that gives its values."""
+        return self.column or self.name
+
+
+def _beyond_chance(divisor: str) -> str:
+    return f"excess_inliers / nullif({divisor}, 0)"
+
+
+_BY_PAIRS: tuple[Criterion, ...] = (
+    Criterion("recall", description="inliers / keypoints of image 1"),
+    Criterion("precision", description="inliers / matches: the inlier ratio"),
+    Criterion("repeatability", description="inliers / the smaller number of keypoints"),
+    Criterion("f1_score", description="harmonic mean of precision and recall"),
+    Criterion("inliers", description="matches that agree with the model"),
+    Criterion("matches", description="mutual matches"),
+    Criterion("seconds_per_1k_matches", "lower", description="seconds for 1000 matches"),
+    Criterion("seconds_per_1k_inliers", "lower", description="seconds for 1000 inliers"),
+    Criterion(
+        "recall_beyond_chance",
+        column=_beyond_chance("keypoints_1"),
+        description="excess inliers / keypoints of image 1",
+    ),
+    Criterion("precision_beyond_chance", description="excess inliers / matches"),
+    Criterion(
+        "repeatability_beyond_chance",
+        column=_beyond_chance("least(keypoints_1, keypoints_2)"),
+        description="excess inliers / the smaller number of keypoints",
+    ),
+    Criterion(
+        "f1_beyond_chance",
+        # The harmonic mean of excess / matches and excess / keypoints_1.
+        column="2 * excess_inliers / nullif(matches + keypoints_1, 0)",
+        description="harmonic mean of precision and recall beyond chance",
+    ),
+    Criterion("excess_inliers", description="inliers beyond those that shuffled matches give"),
+    Criterion(
+        "seconds_per_1k_excess_inliers",
+        "lower",
+        column="1000 * total_seconds / nullif(excess_inliers, 0)",
+        description="seconds for 1000 inliers beyond chance",
+    ),
+    Criterion("total_seconds", "lower", description="seconds for one image and one pair"),
+    Criterion("seconds_per_1k_keypoints", "lower", description="seconds for 1000 keypoints"),
+    Criterion("descriptor_bytes", "lower", description="bytes of one descriptor"),
+    Criterion("peak_memory_mb", "lower", description="largest rise of memory in one stage"),
+)
+
+_GROUND_TRUTH: tuple[Criterion, ...] = (
+    *(
+        Criterion(f"gt_precision@{t}", description=f"share of matches right within {t} px")
+        for t in (1, 3, 5)
+    ),
+    *(
+        Criterion(f"gt_matching_score@{t}", description=f"matches right within {t} px / keypoints")
+        for t in (1, 3, 5)
+    ),
+    Criterion("gt_repeatability", description="covisible keypoints found again within 3 px"),
+    *(
+        Criterion(f"homography_auc@{t}", description=f"accuracy of the homography up to {t} px")
+        for t in (1, 3, 5)
+    ),
+)
+
+_RECONSTRUCTION: tuple[Criterion, ...] = (
+    Criterion(
+        "reprojection_error",
+        "lower",
+        reconstruction=True,
+        description="mean reprojection error of the 3D points in pixels",
+    ),
+    Criterion("points_3d", reconstruction=True, description="3D points of the model"),
+    Criterion(
+        "reconstruction_seconds",
+        "lower",
+        reconstruction=True,
+        description="seconds that the reconstruction takes",
+    ),
+)
+
+CRITERIA: tuple[Criterion, ...] = (*_BY_PAIRS, *_GROUND_TRUTH, *_RECONSTRUCTION)
+RECONSTRUCTION = tuple(criterion.name for criterion in _RECONSTRUCTION)
+
+
+def criteria_named(names: Iterable[str], known: Sequence[Criterion] = CRITERIA) -> list[Criterion]:
+    """The criteria of these names, in that order.
+
+    Raises
+    ------
+    ScoreError
+        If there is none, one is named twice, or one does not exist.
+    """
+    by_name = {criterion.name: criterion for criterion in known}
+    chosen = [name.strip() for name in names]
+    if not chosen:
+        raise ScoreError("no criterion was chosen; name at least one")
+    for name in chosen:
+        if name not in by_name:
+            raise ScoreError(f"there is no criterion {name!r}; choose from {', '.join(by_name)}")
+        if chosen.count(name) > 1:
+            raise ScoreError(f"criterion {name} is named twice; name it once")
+    return [by_name[name] for name in chosen]

@@ -1,0 +1,111 @@
+"""From measured values to comparable ones: bounds, means and min-max normalisation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.scoring.settings import Failures
+from aerocues.scoring.table import DecisionTable
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Means:
+    """Means and bounds of a batch of resamples; see `Sums.means`.
+
+    Attributes
+    ----------
+    mean : (batch, alternatives, criteria) float64
+        Over the valid repeats; NaN where there is none.
+    valid, failed : (batch, alternatives, criteria) float64
+        Number of repeats.
+    low, high : (batch, criteria) float64
+        Smallest and largest value of all repeats of all alternatives.
+    """
+
+    mean: Array
+    valid: Array
+    failed: Array
+    low: Array
+    high: Array
+
+
+class Sums:
+    """A table laid out so that the means of many resamples are matrix products.
+
+    Parameters
+    ----------
+    table : DecisionTable
+    """
+
+    def __init__(self, table: DecisionTable) -> None:
+        self._shape = (len(table.alternatives), len(table.criteria))
+        by_repeat = table.values.transpose(1, 0, 2)
+        missing = np.isnan(by_repeat)
+        flat = (len(table.repeats), -1)
+        self._values = np.where(missing, 0, by_repeat).reshape(flat)
+        self._valid = (~missing).astype(np.float64).reshape(flat)
+        self._failed = table.failed.transpose(1, 0, 2).astype(np.float64).reshape(flat)
+        self._low = np.where(missing, np.inf, by_repeat).min(axis=1)
+        self._high = np.where(missing, -np.inf, by_repeat).max(axis=1)
+
+    def means(self, counts: Array, bounds: tuple[Array, Array] | None = None) -> Means:
+        """Means of resamples.
+
+        Parameters
+        ----------
+        counts : (batch, repeats) float64
+            How often each repeat was drawn.
+        bounds : pair of (1, criteria) float64, optional
+            Smallest and largest values to go by; by default those of the repeats drawn.
+        """
+        shape = (len(counts), *self._shape)
+        valid = (counts @ self._valid).reshape(shape)
+        total = (counts @ self._values).reshape(shape)
+        mean = np.divide(total, valid, out=np.full(shape, np.nan), where=valid > 0)
+        low, high = self._bounds(counts) if bounds is None else bounds
+        return Means(
+            mean=mean,
+            valid=valid,
+            failed=(counts @ self._failed).reshape(shape),
+            low=low,
+            high=high,
+        )
+
+    def _bounds(self, counts: Array) -> tuple[Array, Array]:
+        drawn = counts[:, :, None] > 0
+        return (
+            np.where(drawn, self._low, np.inf).min(axis=1),
+            np.where(drawn, self._high, -np.inf).max(axis=1),
+        )
+
+
+def normalise(means: Means, table: DecisionTable, failures: Failures) -> Array:
+    """Bring all criteria into [0, 1], 1 being the best.
+
+    A value equal for all alternatives and repeats is 1: none is worse than the best. A failed
+    repeat counts as 0 or not at all. As normalisation is linear, the mean over valid and failed
+    repeats is that over the valid ones times their share.
+
+    Returns
+    -------
+    (batch, alternatives, criteria) float64
+        NaN in all criteria of an alternative that lacks one of them.
+    """
+    width = (means.high - means.low)[:, None, :]
+    offset = means.mean - means.low[:, None, :]
+    known = np.isfinite(width) & (width > 0)
+    z = np.divide(offset, width, out=np.zeros_like(offset), where=known)
+    z = np.where(table.is_cost, 1 - z, z).clip(0, 1)
+    z = np.where(known, z, 1)
+    z[np.isnan(means.mean)] = np.nan
+    if failures == "worst":
+        tried = means.valid + means.failed
+        share = np.divide(means.valid, tried, out=np.zeros_like(tried), where=tried > 0)
+        z = np.where(tried > 0, np.where(means.valid > 0, z * share, 0), np.nan)
+    z[np.isnan(z).any(axis=2)] = np.nan
+    return z

@@ -1,0 +1,178 @@
+"""The ranking with everything that says how sure it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.bootstrap import RESAMPLES, Bootstrap, bootstrap
+from aerocues.scoring.cues import Scores, score
+from aerocues.scoring.per_repeat import interval_of_repeats
+from aerocues.scoring.settings import ScoreSettings
+from aerocues.scoring.significance import LEVEL, ComparisonsWithBest, compare_with_best
+from aerocues.scoring.table import DecisionTable
+
+if TYPE_CHECKING:
+    import polars as pl
+
+Array = NDArray[np.float64]
+Interval = Literal["joint", "pairwise"]
+TOP = 5
+
+INTERVALS: dict[str, Callable[[Scores, Bootstrap, int], tuple[Array, Array]]] = {
+    "joint": lambda scores, resampled, seed: resampled.score_interval(),
+    "pairwise": lambda scores, resampled, seed: interval_of_repeats(
+        scores, len(resampled.scores), seed
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Alternatives in order, with intervals, probabilities and significance.
+
+    Attributes
+    ----------
+    scores : Scores
+    resampled : Bootstrap
+    comparisons : ComparisonsWithBest
+    seed : int
+    interval : {"joint", "pairwise"}
+        Kind of the score's interval: of resamples joint to all alternatives, or the thesis's.
+    top : int
+        Places that count for ``probability_top``.
+    """
+
+    scores: Scores
+    resampled: Bootstrap
+    comparisons: ComparisonsWithBest
+    seed: int
+    interval: Interval
+    top: int
+
+    def frame(self, name: str = "alternative") -> pl.DataFrame:
+        """The ranking as a table, the best first; alternatives without a score are left out.
+
+        Parameters
+        ----------
+        name : str
+            What to call the column of the alternatives.
+
+        Returns
+        -------
+        pl.DataFrame
+            `name`; ``rank``, ``rank_low``, ``rank_high`` and ``score``, ``score_low``,
+            ``score_high`` (95 %); ``probability_best``, ``probability_top``; ``p_value`` of the
+            difference from the best (corrected; null for the best); ``success_rate``;
+            ``repeats`` measured; and the mean of each criterion over its valid repeats.
+        """
+        import polars as pl
+
+        scores, table = self.scores, self.scores.table
+        low, high = INTERVALS[self.interval](scores, self.resampled, self.seed)
+        rank_low, rank_high = self.resampled.rank_interval()
+        columns: dict[str, Any] = {
+            name: table.alternatives,
+            "rank": scores.ranks,
+            "rank_low": rank_low,
+            "rank_high": rank_high,
+            "score": scores.scores,
+            "score_low": low,
+            "score_high": high,
+            "probability_best": self.resampled.probability_in_top(1),
+            "probability_top": self.resampled.probability_in_top(self.top),
+            "p_value": self.comparisons.p_value,
+            "success_rate": table.success_rate,
+            "repeats": table.tried,
+            **{
+                criterion: scores.means[:, position]
+                for position, criterion in enumerate(table.criterion_names)
+            },
+        }
+        frame = pl.DataFrame(columns, nan_to_null=True).with_columns(
+            pl.col("rank", "rank_low", "rank_high").cast(pl.Int64)
+        )
+        return frame.select(pl.all().gather(scores.order.tolist()))
+
+    def weights(self) -> pl.DataFrame:
+        """Weights of the criteria: ``criterion``, one column a method, their ``aggregate``."""
+        import polars as pl
+
+        scores = self.scores
+        return pl.DataFrame(
+            {
+                "criterion": scores.table.criterion_names,
+                **dict(zip(scores.settings.weights, scores.by_method, strict=True)),
+                "aggregate": scores.weights,
+            }
+        )
+
+    def unscored(self) -> list[str]:
+        """Alternatives that lack a criterion and so have no score."""
+        scores = self.scores
+        lacking = np.flatnonzero(np.isnan(scores.scores))
+        return [scores.table.alternatives[position] for position in lacking]
+
+    def indistinguishable(self, level: float = LEVEL) -> list[str]:
+        """Alternatives that cannot be told from the best, by their score."""
+        kept = set(self.comparisons.indistinguishable(level).tolist())
+        names = self.scores.table.alternatives
+        return [names[position] for position in self.scores.order if int(position) in kept]
+
+    def settings(self) -> dict[str, Any]:
+        """Everything that was set, and what was drawn."""
+        return {
+            **asdict(self.scores.settings),
+            "criteria": list(self.scores.table.criterion_names),
+            "repeats": len(self.scores.table.repeats),
+            "resamples": len(self.resampled.scores),
+            "resampled": self.resampled.unit,
+            "seed": self.seed,
+            "interval": self.interval,
+            "top": self.top,
+            "test": self.comparisons.test,
+        }
+
+
+def rank_alternatives(
+    table: DecisionTable,
+    settings: ScoreSettings | None = None,
+    *,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+    interval: Interval = "joint",
+    test: str = "bootstrap",
+    top: int = TOP,
+) -> Ranking:
+    """Score a table and tell how sure the ranking is.
+
+    Parameters
+    ----------
+    table : DecisionTable
+    settings : ScoreSettings, optional
+    resamples : int
+        Of the repeats, jointly for all alternatives.
+    seed : int
+    interval : {"joint", "pairwise"}
+        Interval of the score: from the joint resamples, or the thesis's.
+    test : {"bootstrap", "wilcoxon"}
+        Of the difference from the best; see `significance.compare_with_best`.
+    top : int
+        Places that count for ``probability_top``.
+
+    Raises
+    ------
+    ScoreError
+        If the table cannot be scored or an argument does not exist.
+    """
+    if interval not in INTERVALS:
+        raise ScoreError(f"there is no interval {interval!r}; choose from {', '.join(INTERVALS)}")
+    scores = score(table, settings)
+    resampled = bootstrap(scores, resamples, seed)
+    comparisons = compare_with_best(scores, resampled, test)
+    return Ranking(scores, resampled, comparisons, seed, interval, top)

@@ -1,0 +1,130 @@
+"""How a score is put together, and the presets of it: one row each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.aggregation import AGGREGATIONS
+from aerocues.scoring.weights import WEIGHT_METHODS
+
+Failures = Literal["worst", "omit"]
+FAILURES: tuple[Failures, ...] = ("worst", "omit")
+
+
+def _check(name: str, what: str, choices: tuple[str, ...]) -> None:
+    if name not in choices:
+        raise ScoreError(f"there is no {what} {name!r}; choose from {', '.join(choices)}")
+
+
+@dataclass(frozen=True)
+class ScoreSettings:
+    """Settings of the Composite Unsupervised Efficiency Score (CUES).
+
+    Attributes
+    ----------
+    alpha : float
+        Power of the normalised values, above 0; below 1 it lifts small values.
+    weights : tuple of str
+        Names of rows of `weights.WEIGHT_METHODS`.
+    aggregation : str
+        How the weights of the methods become one: a row of `aggregation.AGGREGATIONS`.
+    failures : {"worst", "omit"}
+        Whether a failed repeat counts as the worst value of each criterion, or not at all.
+
+    Raises
+    ------
+    ScoreError
+        If a value is out of range or a name does not exist.
+    """
+
+    alpha: float = 0.5
+    weights: tuple[str, ...] = ("entropy", "variance", "critic", "pca")
+    aggregation: str = "arithmetic"
+    failures: Failures = "worst"
+
+    def __post_init__(self) -> None:
+        if not 0 < self.alpha < float("inf"):
+            raise ScoreError(f"alpha is {self.alpha}; give a number above 0, such as 0.5")
+        if not self.weights:
+            raise ScoreError(f"no weights; choose from {', '.join(WEIGHT_METHODS)}")
+        for name in self.weights:
+            _check(name, "method of weighting", tuple(WEIGHT_METHODS))
+        _check(self.aggregation, "aggregation", tuple(AGGREGATIONS))
+        _check(self.failures, "treatment of failures", FAILURES)
+
+
+@dataclass(frozen=True)
+class ScorePreset:
+    """A named way of scoring combinations.
+
+    Attributes
+    ----------
+    name : str
+    criteria, reconstruction_criteria : tuple of str
+        Names of rows of `criteria.CRITERIA`; the second are added where there are
+        reconstructions.
+    settings : ScoreSettings
+    chance_fails : bool
+        Whether a model that is no better than chance is a failure.
+    description : str
+    """
+
+    name: str
+    criteria: tuple[str, ...]
+    settings: ScoreSettings
+    chance_fails: bool
+    description: str
+    reconstruction_criteria: tuple[str, ...] = (
+        "reprojection_error",
+        "points_3d",
+        "reconstruction_seconds",
+    )
+
+
+PRESETS: dict[str, ScorePreset] = {
+    preset.name: preset
+    for preset in (
+        ScorePreset(
+            "default",
+            (
+                "recall_beyond_chance",
+                "precision_beyond_chance",
+                "repeatability_beyond_chance",
+                "f1_beyond_chance",
+                "excess_inliers",
+                "matches",
+                "seconds_per_1k_matches",
+                "seconds_per_1k_excess_inliers",
+            ),
+            ScoreSettings(),
+            chance_fails=True,
+            description="inliers beyond chance; a failed pair counts as the worst; CRITIC of 1995",
+        ),
+        ScorePreset(
+            "thesis",
+            (
+                "recall",
+                "precision",
+                "repeatability",
+                "f1_score",
+                "inliers",
+                "matches",
+                "seconds_per_1k_matches",
+                "seconds_per_1k_inliers",
+            ),
+            ScoreSettings(
+                weights=("entropy", "variance", "critic_published", "pca"), failures="omit"
+            ),
+            chance_fails=False,
+            description="as published: raw inliers, failed pairs left out, CRITIC with a diagonal",
+        ),
+    )
+}
+
+
+def preset_named(name: str) -> ScorePreset:
+    """The preset of this name; ScoreError where there is none."""
+    _check(name, "preset of scoring", tuple(PRESETS))
+    return PRESETS[name]

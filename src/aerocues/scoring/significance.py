@@ -1,0 +1,136 @@
+"""Whether the best is better than another one, or could be so by luck of the repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.bootstrap import Bootstrap
+from aerocues.scoring.cues import Scores
+from aerocues.scoring.per_repeat import scores_of_units
+from aerocues.scoring.resampling import independent_units
+
+Array = NDArray[np.float64]
+LEVEL = 0.05
+
+
+@dataclass(frozen=True)
+class ComparisonsWithBest:
+    """The best alternative against all others.
+
+    Attributes
+    ----------
+    best : int
+        Position of the best alternative.
+    difference : (alternatives,) float64
+        Score of the best minus that of each.
+    p_value : (alternatives,) float64
+        Two-sided, corrected for the number of comparisons (Holm); NaN for the best itself and for
+        alternatives without a score.
+    test : str
+    """
+
+    best: int
+    difference: Array
+    p_value: Array
+    test: str
+
+    def indistinguishable(self, level: float = LEVEL) -> NDArray[np.int64]:
+        """Positions of those that cannot be told from the best, without the best itself."""
+        return np.flatnonzero(self.p_value >= level)
+
+
+def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
+    """Difference of the scores over its standard error among the resamples, Student's t.
+
+    A percentile of 1000 resamples cannot be smaller than 0.001, too coarse to be corrected for
+    hundreds of comparisons; the standard error can be had from them.
+    """
+    from scipy.stats import t
+
+    degrees = int(independent_units(scores.table).max())
+    difference = scores.scores[scores.best] - scores.scores
+    if degrees < 1:
+        return np.where(np.isnan(difference), np.nan, 1.0)
+    paired = resampled.scores[:, [scores.best]] - resampled.scores
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The bootstrap's variance of a mean of n is too small by (n - 1) / n.
+        error = np.nanstd(paired, axis=0) * np.sqrt((degrees + 1) / degrees)
+        statistic = np.abs(difference) / error
+    statistic = np.where(difference == 0, 0, statistic)
+    return np.asarray(2 * t.sf(statistic, degrees))
+
+
+def _by_signed_ranks(scores: Scores, _: Bootstrap) -> Array:
+    """Wilcoxon's signed-rank test on the scores of single units (blocks or repeats)."""
+    from scipy.stats import wilcoxon
+
+    values = scores_of_units(scores)
+    p_values = np.full(len(values), np.nan)
+    for position, row in enumerate(values):
+        both = ~np.isnan(row) & ~np.isnan(values[scores.best])
+        if np.isnan(scores.scores[position]):
+            continue
+        paired = (values[scores.best] - row)[both]
+        p_values[position] = wilcoxon(paired).pvalue if np.any(paired) else 1.0
+    return p_values
+
+
+TESTS: dict[str, Callable[[Scores, Bootstrap], Array]] = {
+    "bootstrap": _by_resampling,
+    "wilcoxon": _by_signed_ranks,
+}
+
+
+def holm(p_values: Array) -> Array:
+    """Correct p-values for their number (Holm 1979); NaN are no comparisons and stay.
+
+    Parameters
+    ----------
+    p_values : (comparisons,) float64
+
+    Returns
+    -------
+    (comparisons,) float64
+        At most 1.
+    """
+    known = np.flatnonzero(~np.isnan(p_values))
+    order = known[np.argsort(p_values[known], kind="stable")]
+    corrected = np.full(len(p_values), np.nan)
+    steps = p_values[order] * np.arange(len(order), 0, -1)
+    corrected[order] = np.minimum(np.maximum.accumulate(steps), 1)
+    return corrected
+
+
+def compare_with_best(
+    scores: Scores, resampled: Bootstrap, test: str = "bootstrap"
+) -> ComparisonsWithBest:
+    """Test the best alternative against each other one, paired by repeats.
+
+    Parameters
+    ----------
+    scores : Scores
+    resampled : Bootstrap
+        Of these scores.
+    test : {"bootstrap", "wilcoxon"}
+        On the difference of the scores, or on those of single units of the repeats.
+
+    Raises
+    ------
+    ScoreError
+        If there is no such test.
+    """
+    if test not in TESTS:
+        raise ScoreError(f"there is no test {test!r}; choose from {', '.join(TESTS)}")
+    p_values = TESTS[test](scores, resampled)
+    p_values[scores.best] = np.nan
+    return ComparisonsWithBest(
+        best=scores.best,
+        difference=scores.scores[scores.best] - scores.scores,
+        p_value=holm(p_values),
+        test=test,
+    )

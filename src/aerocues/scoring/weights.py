@@ -1,0 +1,186 @@
+"""Objective weights of criteria, from the spread and the redundancy of their values.
+
+All functions take a batch of matrices at once, so that weights can be estimated anew in every
+resample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+SAME = 1e-12
+DEGENERATE = 1e-9
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What all methods need to know of a batch of matrices.
+
+    Attributes
+    ----------
+    matrix : (batch, alternatives, criteria) float64
+        In [0, 1], higher is better; 0 where an alternative does not take part.
+    count : (batch, 1) float64
+        Alternatives that take part.
+    covariance : (batch, criteria, criteria) float64
+        Population covariance of the criteria over the alternatives.
+    """
+
+    matrix: Array
+    count: Array
+    covariance: Array
+
+    @property
+    def variance(self) -> Array:
+        return np.asarray(np.diagonal(self.covariance, axis1=-2, axis2=-1))
+
+
+def _entropy(spread: Spread) -> Array:
+    total = spread.matrix.sum(axis=1, keepdims=True)
+    share = spread.matrix / np.where(total > 0, total, 1)
+    logarithm = np.log(share, where=share > 0, out=np.zeros_like(share))
+    entropy = -np.einsum("bac,bac->bc", share, logarithm)
+    most = np.log(np.maximum(spread.count, 2))
+    return np.asarray(np.where(total[:, 0] > 0, 1 - entropy / most, 0))
+
+
+def _variance(spread: Spread) -> Array:
+    return spread.variance
+
+
+def _conflict(spread: Spread) -> Array:
+    """1 - abs(r) for each pair of criteria; a constant one conflicts with none."""
+    deviation = np.sqrt(spread.variance)
+    product = deviation[:, :, None] * deviation[:, None, :]
+    known = product > 0
+    r = np.abs(spread.covariance) / np.where(known, product, 1)
+    return np.where(known, 1 - np.minimum(r, 1), 0)
+
+
+def _critic(spread: Spread) -> Array:
+    conflict = _conflict(spread)
+    diagonal = np.arange(conflict.shape[-1])
+    conflict[:, diagonal, diagonal] = 0
+    return np.asarray(np.sqrt(spread.variance) * conflict.sum(axis=-1))
+
+
+def _critic_published(spread: Spread) -> Array:
+    conflict = _conflict(spread)
+    diagonal = np.arange(conflict.shape[-1])
+    conflict[:, diagonal, diagonal] = 1
+    return np.asarray(np.sqrt(spread.variance) * conflict.sum(axis=-1))
+
+
+def _pca(spread: Spread) -> Array:
+    values, vectors = np.linalg.eigh(spread.covariance)
+    loadings = np.abs(vectors)
+    values = np.maximum(values, 0)
+    largest = values[:, -1:]
+    # Where eigenvalues are equal, any turn of their vectors is as good as another, and the order
+    # of the criteria would decide. What does not turn is the projection onto their space.
+    close = np.diff(values, axis=-1) <= DEGENERATE * largest
+    matters = values[:, 1:] > DEGENERATE * largest
+    for one in np.flatnonzero((close & matters).any(axis=-1)):
+        loadings[one] = _unturned(values[one], vectors[one])
+    total = values.sum(axis=-1, keepdims=True)
+    ratio = values / np.where(total > 0, total, 1)
+    return np.asarray(np.einsum("bck,bk->bc", loadings, ratio))
+
+
+def _unturned(values: Array, vectors: Array) -> Array:
+    """Loadings (criteria, components) in which components of equal eigenvalue share alike."""
+    loadings = np.abs(vectors)
+    starts = np.flatnonzero(np.diff(values, prepend=-1.0) > DEGENERATE * values[-1])
+    for start, end in zip(starts, [*starts[1:], len(values)], strict=True):
+        share = np.sqrt((vectors[:, start:end] ** 2).mean(axis=1, keepdims=True))
+        loadings[:, start:end] = share
+    return loadings
+
+
+@dataclass(frozen=True)
+class WeightMethod:
+    """One method: ``compute`` gives (batch, criteria), not negative, of any sum."""
+
+    name: str
+    description: str
+    source: str
+    compute: Callable[[Spread], Array]
+
+
+WEIGHT_METHODS: dict[str, WeightMethod] = {
+    method.name: method
+    for method in (
+        WeightMethod(
+            "entropy",
+            "1 - entropy of each alternative's share",
+            "Shannon 1948; Hwang and Yoon 1981",
+            _entropy,
+        ),
+        WeightMethod("variance", "population variance", "statistical variance", _variance),
+        WeightMethod(
+            "critic",
+            "standard deviation x sum of (1 - abs(r)) over the other criteria",
+            "Diakoulaki, Mavrotas and Papayannakis 1995, with abs(r)",
+            _critic,
+        ),
+        WeightMethod(
+            "critic_published",
+            "as critic, with 1 more for each criterion (r = 0 on the diagonal)",
+            "the thesis's published figures",
+            _critic_published,
+        ),
+        WeightMethod(
+            "pca",
+            "sum over principal components of explained-variance ratio x abs(loading)",
+            "principal components of the covariance",
+            _pca,
+        ),
+    )
+}
+
+
+def weights_by_method(matrix: Array, methods: Sequence[str]) -> Array:
+    """Weights of the criteria by each method.
+
+    Parameters
+    ----------
+    matrix : (batch, alternatives, criteria) float64
+        In [0, 1], higher is better; NaN in all criteria of an alternative that does not take part.
+    methods : sequence of str
+        Names of rows of `WEIGHT_METHODS`.
+
+    Returns
+    -------
+    (batch, methods, criteria) float64
+        Each set sums to 1. A constant criterion weighs 0; where a method tells none from the
+        others, those that are not constant weigh alike, and where all are constant, all do.
+    """
+    present = ~np.isnan(matrix)
+    varies = _varies(matrix, present)
+    filled = np.where(present, matrix, 0)
+    count = present[:, :, 0].sum(axis=1, keepdims=True).astype(np.float64)
+    mean = filled.sum(axis=1) / np.maximum(count, 1)
+    centred = np.where(present, matrix - mean[:, None, :], 0)
+    covariance = centred.transpose(0, 2, 1) @ centred / np.maximum(count, 1)[:, :, None]
+    both = varies[:, :, None] & varies[:, None, :]
+    spread = Spread(filled, count, np.where(both, covariance, 0))
+    alike = np.where(varies.any(axis=-1, keepdims=True), varies, True).astype(np.float64)
+    sets = []
+    for name in methods:
+        raw = np.where(varies, np.maximum(WEIGHT_METHODS[name].compute(spread), 0), 0)
+        total = raw.sum(axis=-1, keepdims=True)
+        raw = np.where(total > 0, raw, alike)
+        sets.append(raw / raw.sum(axis=-1, keepdims=True))
+    return np.stack(sets, axis=1)
+
+
+def _varies(matrix: Array, present: Mask) -> Mask:
+    low = np.where(present, matrix, np.inf).min(axis=1)
+    high = np.where(present, matrix, -np.inf).max(axis=1)
+    return np.asarray(high - low > SAME)
