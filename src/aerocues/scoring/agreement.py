@@ -6,6 +6,7 @@ criteria before the power alpha and the weights of the score.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -108,7 +109,9 @@ def _preferences(
     costs = is_cost & method.needs_costs
     values = np.where(costs, 1 - matrix, matrix)
     ranking = getattr(methods, method.kind)(*method.arguments)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"), warnings.catch_warnings():
+        # PROMETHEE warns of alternatives that are better or worse than all others in everything.
+        warnings.filterwarnings("ignore", "Alternatives with indices", UserWarning)
         found = ranking(values, weights / weights.sum(), np.where(costs, -1, 1))
     preferences = np.asarray(found, dtype=np.float64)
     return preferences if method.higher_is_better else -preferences

@@ -63,14 +63,17 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     resamples : int
         2 or more.
     seed : int
+        0 or more.
 
     Raises
     ------
     ScoreError
-        If there are fewer than 2 resamples.
+        If there are fewer than 2 resamples or the seed is negative.
     """
     if resamples < 2:
         raise ScoreError(f"{resamples} resamples are too few; take 2 or more, such as 1000")
+    if seed < 0:
+        raise ScoreError(f"the seed is {seed}; give 0 or more")
     table, sums = scores.table, Sums(scores.table)
     size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)
     found = [

@@ -48,7 +48,12 @@ def criteria_correlation(scores: Scores) -> Array:
     (criteria, criteria) float64
         Of the values as measured, costs not inverted; NaN where a criterion is constant.
     """
-    return _pairwise(scores.means.T, lambda a, b: float(np.corrcoef(a, b)[0, 1]))
+    return _pairwise(scores.means.T, _pearson)
+
+
+def _pearson(a: Array, b: Array) -> float:
+    # Scaled first: the products of very large or very small values are no longer numbers.
+    return float(np.corrcoef(a / np.abs(a).max(), b / np.abs(b).max())[0, 1])
 
 
 def _pairwise(rows: Array, measure: Callable[[Array, Array], float]) -> Array:

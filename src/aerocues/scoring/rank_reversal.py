@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.errors import ScoreError
 from aerocues.scoring.correlation import rank_correlation
 from aerocues.scoring.cues import Scores, rank, score
 
@@ -24,6 +25,7 @@ class RankReversal:
     share : float
         Of the alternatives, dropped in each round.
     rounds : int
+        Those in which the alternatives that remain could be scored.
     mean_shift, largest_shift : float
         Places by which ranks moved: the mean over rounds and alternatives, and the most.
     spearman_mean, spearman_lowest : float
@@ -47,7 +49,26 @@ def rank_reversal(
     """Drop a share of the alternatives at random, score the others anew, and see what moves.
 
     Of a handful of alternatives, one is dropped at least; a single one cannot be.
+
+    Parameters
+    ----------
+    scores : Scores
+    share : float
+        Of the alternatives, between 0 and 1.
+    rounds : int
+        1 or more.
+    seed : int
+
+    Raises
+    ------
+    ScoreError
+        If the share or the number of rounds is out of range.
     """
+    if not 0 < share < 1 or rounds < 1:
+        raise ScoreError(
+            f"a share of {share} cannot be dropped {rounds} times; give a share between 0 and 1 "
+            "and 1 round or more"
+        )
     number = len(scores.table.alternatives)
     dropped = min(max(1, round(share * number)), number - 1)
     generator = np.random.default_rng(seed)
@@ -55,20 +76,22 @@ def rank_reversal(
     for _ in range(rounds):
         left = np.sort(generator.permutation(number)[dropped:])
         before = scores.scores[left]
-        if np.isnan(before).all():
+        try:
+            after = score(scores.table.with_alternatives(left), scores.settings)
+        except ScoreError:
+            # None of those that are left has a value of some criterion: nothing to rank.
             continue
-        after = score(scores.table.with_alternatives(left), scores.settings)
-        shifts.append(np.abs(after.ranks - rank(before)))
+        shifts.append(np.abs(after.ranks - rank(before))[~np.isnan(before)])
         correlations.append(rank_correlation(np.stack([before, after.scores]))[0, 1])
         kept.append(bool(after.ranks[np.nanargmax(before)] == 1))
     known = np.array([value for value in correlations if not np.isnan(value)])
-    moved = np.concatenate(shifts)
+    moved = np.concatenate(shifts) if shifts else np.array([np.nan])
     return RankReversal(
         share=dropped / number,
         rounds=len(shifts),
-        mean_shift=float(np.nanmean(moved)),
-        largest_shift=float(np.nanmax(moved)),
+        mean_shift=float(moved.mean()),
+        largest_shift=float(moved.max()),
         spearman_mean=float(known.mean()) if len(known) else float("nan"),
         spearman_lowest=float(known.min()) if len(known) else float("nan"),
-        best_kept=float(np.mean(kept)),
+        best_kept=float(np.mean(kept)) if kept else float("nan"),
     )

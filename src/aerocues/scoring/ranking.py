@@ -70,13 +70,18 @@ class Ranking:
             ``score_high`` (95 %); ``probability_best``, ``probability_top``; ``p_value`` of the
             difference from the best (corrected; null for the best); ``success_rate``;
             ``repeats`` measured; and the mean of each criterion over its valid repeats.
+
+        Raises
+        ------
+        ScoreError
+            If a criterion has the name of one of the other columns.
         """
         import polars as pl
 
         scores, table = self.scores, self.scores.table
         low, high = INTERVALS[self.interval](scores, self.resampled, self.seed)
         rank_low, rank_high = self.resampled.rank_interval()
-        columns: dict[str, Any] = {
+        figures: dict[str, Any] = {
             name: table.alternatives,
             "rank": scores.ranks,
             "rank_low": rank_low,
@@ -89,12 +94,14 @@ class Ranking:
             "p_value": self.comparisons.p_value,
             "success_rate": table.success_rate,
             "repeats": table.tried,
-            **{
-                criterion: scores.means[:, position]
-                for position, criterion in enumerate(table.criterion_names)
-            },
         }
-        frame = pl.DataFrame(columns, nan_to_null=True).with_columns(
+        means = dict(zip(table.criterion_names, scores.means.T, strict=True))
+        if taken := sorted(figures.keys() & means.keys()):
+            raise ScoreError(
+                f"criterion {taken[0]!r} has the name of another column of the ranking; give it "
+                "another name"
+            )
+        frame = pl.DataFrame({**figures, **means}, nan_to_null=True).with_columns(
             pl.col("rank", "rank_low", "rank_high").cast(pl.Int64)
         )
         return frame.select(pl.all().gather(scores.order.tolist()))

@@ -51,6 +51,8 @@ class ScoreSettings:
             raise ScoreError(f"no weights; choose from {', '.join(WEIGHT_METHODS)}")
         for name in self.weights:
             _check(name, "method of weighting", tuple(WEIGHT_METHODS))
+            if self.weights.count(name) > 1:
+                raise ScoreError(f"the weights name {name} twice; name it once")
         _check(self.aggregation, "aggregation", tuple(AGGREGATIONS))
         _check(self.failures, "treatment of failures", FAILURES)
 

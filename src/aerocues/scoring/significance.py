@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.bootstrap import Bootstrap
-from aerocues.scoring.cues import Scores
+from aerocues.scoring.cues import DIGITS, Scores
 from aerocues.scoring.per_repeat import scores_of_units
-from aerocues.scoring.resampling import independent_units
 
 Array = NDArray[np.float64]
 LEVEL = 0.05
@@ -52,17 +51,20 @@ def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
     """
     from scipy.stats import t
 
-    degrees = int(independent_units(scores.table).max())
-    difference = scores.scores[scores.best] - scores.scores
-    if degrees < 1:
-        return np.where(np.isnan(difference), np.nan, 1.0)
+    # What differs by rounding only is equal, as for ranks.
+    difference = np.abs(np.round(scores.scores[scores.best] - scores.scores, DIGITS))
+    known = ~np.isnan(scores_of_units(scores))
+    shared = (known & known[scores.best]).sum(axis=1)
     paired = resampled.scores[:, [scores.best]] - resampled.scores
+    testable = (shared > 1) & ~np.isnan(paired).all(axis=0)
+    error = np.full(len(shared), np.inf)
+    # The bootstrap's variance of a mean of n is too small by (n - 1) / n.
+    error[testable] = np.nanstd(paired[:, testable], axis=0) * np.sqrt(
+        shared[testable] / (shared[testable] - 1)
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
-        # The bootstrap's variance of a mean of n is too small by (n - 1) / n.
-        error = np.nanstd(paired, axis=0) * np.sqrt((degrees + 1) / degrees)
-        statistic = np.abs(difference) / error
-    statistic = np.where(difference == 0, 0, statistic)
-    return np.asarray(2 * t.sf(statistic, degrees))
+        statistic = np.where(difference == 0, 0, difference / error)
+    return np.asarray(2 * t.sf(statistic, np.maximum(shared - 1, 1)))
 
 
 def _by_signed_ranks(scores: Scores, _: Bootstrap) -> Array:

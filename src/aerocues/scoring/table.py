@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+# Sums of larger ones might be no numbers any more.
+LARGEST = 1e300
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class DecisionTable:
     Raises
     ------
     ScoreError
-        If shapes do not fit, something is empty or a name comes twice.
+        If shapes do not fit, something is empty, infinite or contradictory, or a name comes twice.
     """
 
     alternatives: tuple[str, ...]
@@ -69,9 +71,21 @@ class DecisionTable:
             raise ScoreError(f"the values have the shape {self.values.shape}; give {shape}")
         if self.blocks.shape != shape[1:2]:
             raise ScoreError(f"there are {len(self.blocks)} blocks; give one for each repeat")
-        if np.isinf(self.values).any():
-            raise ScoreError("the values hold infinities; mark them as failed, with NaN")
+        for name, labels in self.components.items():
+            if len(labels) != len(self.alternatives):
+                raise ScoreError(f"component {name!r} has {len(labels)} labels; give one for each")
+        self._check_values()
+
+    def _check_values(self) -> None:
+        if (np.abs(self.values) > LARGEST).any():
+            raise ScoreError(
+                f"the values hold infinities or numbers beyond {LARGEST:g}; mark them as failed, "
+                "with NaN"
+            )
+        if (self.failed & ~np.isnan(self.values)).any():
+            raise ScoreError("a value is marked as failed; put NaN where a measurement failed")
         known = np.count_nonzero(~np.isnan(self.values), axis=(0, 1))
+        names = self.criterion_names
         empty = [names[position] for position in np.flatnonzero(known == 0)]
         if empty:
             raise ScoreError(
