@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.cues import Scores, rank, score_batch
-from aerocues.scoring.normalisation import Sums
+from aerocues.scoring.normalisation import Sums, normalise
 from aerocues.scoring.resampling import Unit, draws, unit_of_resampling
 
 Array = NDArray[np.float64]
@@ -26,6 +26,9 @@ class Bootstrap:
     ----------
     scores, ranks : (resamples, alternatives) float64
         NaN where an alternative had no valid repeat in a resample.
+    on_one_scale : (resamples, alternatives) float64
+        Scores with the bounds and weights of the table as it is: what is left is the luck of the
+        repeats, without that of the scale.
     weights : (resamples, criteria) float64
     unit : {"block", "repeat"}
         What was drawn.
@@ -33,6 +36,7 @@ class Bootstrap:
 
     scores: Array
     ranks: Array
+    on_one_scale: Array
     weights: Array
     unit: Unit
 
@@ -75,17 +79,22 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     if seed < 0:
         raise ScoreError(f"the seed is {seed}; give 0 or more")
     table, sums = scores.table, Sums(scores.table)
+    whole = sums.means(np.ones((1, len(table.repeats))))
     size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)
-    found = [
-        score_batch(sums.means(counts), table, scores.settings)
-        for counts in draws(table, resamples, seed, max(1, BATCH_ELEMENTS // size))
-    ]
+    found, on_one_scale = [], []
+    for counts in draws(table, resamples, seed, max(1, BATCH_ELEMENTS // size)):
+        means = sums.means(counts)
+        found.append(score_batch(means, table, scores.settings))
+        means = replace(means, low=whole.low, high=whole.high)
+        normalised = normalise(means, table, scores.settings.failures) ** scores.settings.alpha
+        on_one_scale.append(normalised @ scores.weights)
     values = np.concatenate([batch.scores for batch in found])
     # What has no score in the table takes no part.
     values[:, np.isnan(scores.scores)] = np.nan
     return Bootstrap(
         scores=values,
         ranks=rank(values),
+        on_one_scale=np.concatenate(on_one_scale),
         weights=np.concatenate([batch.weights for batch in found]),
         unit=unit_of_resampling(table),
     )

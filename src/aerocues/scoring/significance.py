@@ -47,7 +47,8 @@ def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
     """Difference of the scores over its standard error among the resamples, Student's t.
 
     A percentile of 1000 resamples cannot be smaller than 0.001, too coarse to be corrected for
-    hundreds of comparisons; the standard error can be had from them.
+    hundreds of comparisons; the standard error can be had from them. Bounds and weights are held:
+    they stretch or shrink all differences alike, which is no doubt about who is better.
     """
     from scipy.stats import t
 
@@ -55,7 +56,7 @@ def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
     difference = np.abs(np.round(scores.scores[scores.best] - scores.scores, DIGITS))
     known = ~np.isnan(scores_of_units(scores))
     shared = (known & known[scores.best]).sum(axis=1)
-    paired = resampled.scores[:, [scores.best]] - resampled.scores
+    paired = resampled.on_one_scale[:, [scores.best]] - resampled.on_one_scale
     testable = (shared > 1) & ~np.isnan(paired).all(axis=0)
     error = np.full(len(shared), np.inf)
     # The bootstrap's variance of a mean of n is too small by (n - 1) / n.

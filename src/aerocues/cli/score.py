@@ -1,0 +1,122 @@
+"""`aerocues score`: ranks the combinations of measured results."""
+
+from __future__ import annotations
+
+import json
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from aerocues.cli.scoring import (
+    AggregationOption,
+    AlphaOption,
+    CriteriaOption,
+    DatasetOption,
+    FailuresOption,
+    PresetOption,
+    ReconstructionOption,
+    ResultsArgument,
+    SeedOption,
+    WeightsOption,
+)
+
+if TYPE_CHECKING:
+    from aerocues.scoring.ranking import Ranking
+
+# Of what a paper has room for.
+PRINTED = ("rank", "combination", "score", "score_low", "score_high", "rank_low", "rank_high")
+
+
+class Interval(StrEnum):
+    """Values of ``--interval``."""
+
+    JOINT = "joint"
+    PAIRWISE = "pairwise"
+
+
+class Test(StrEnum):
+    """Values of ``--test``."""
+
+    BOOTSTRAP = "bootstrap"
+    WILCOXON = "wilcoxon"
+
+
+def score(
+    folder: ResultsArgument,
+    preset: PresetOption = None,
+    criteria: CriteriaOption = None,
+    failures: FailuresOption = None,
+    alpha: AlphaOption = None,
+    weights: WeightsOption = None,
+    aggregation: AggregationOption = None,
+    reconstruction: ReconstructionOption = None,
+    dataset: DatasetOption = None,
+    resamples: Annotated[
+        int, typer.Option(min=2, metavar="N", help="How often the pairs are drawn anew.")
+    ] = 1000,
+    seed: SeedOption = 0,
+    interval: Annotated[
+        Interval, typer.Option(help="Of the score: of joint resamples, or the thesis's.")
+    ] = Interval.JOINT,
+    test: Annotated[Test, typer.Option(help="Of the difference from the best.")] = Test.BOOTSTRAP,
+    top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 15,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, of all.")] = False,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the ranking of all as CSV.")
+    ] = None,
+    latex: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the best N for a paper.")
+    ] = None,
+    markdown: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the best N as Markdown.")
+    ] = None,
+) -> None:
+    """Rank the combinations by CUES and tell how sure the ranking is."""
+    import aerocues
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.ranking_table import facts, print_scores
+    from aerocues.cli.scoring import table_and_settings
+    from aerocues.scoring.ranking import rank_alternatives
+
+    with interruptible():
+        measured, settings = table_and_settings(
+            aerocues.Results(folder),
+            preset=preset,
+            criteria=criteria,
+            reconstruction=reconstruction,
+            dataset=dataset,
+            failures=failures,
+            alpha=alpha,
+            weights=weights,
+            aggregation=aggregation,
+        )
+        ranking = rank_alternatives(
+            measured.table,
+            settings,
+            resamples=resamples,
+            seed=seed,
+            interval=interval.value,
+            test=test.value,
+        )
+    _write(ranking, {"csv": csv, "latex": latex, "markdown": markdown}, top)
+    if as_json:
+        typer.echo(json.dumps(facts(ranking, measured), indent=2))
+    else:
+        print_scores(ranking, measured, top)
+
+
+def _write(ranking: Ranking, targets: dict[str, Path | None], top: int) -> None:
+    from aerocues.evaluation.export import export_table
+
+    frame = ranking.frame("combination")
+    for form, target in targets.items():
+        if target is None:
+            continue
+        if form != "csv":
+            criteria = ranking.scores.table.criterion_names
+            frame = frame.select(*PRINTED, "success_rate", *criteria).head(top)
+        export_table(frame, target, form)
+        sys.stderr.write(f"{len(frame):,} combinations written to {target}\n")

@@ -1,0 +1,119 @@
+"""`aerocues validate`: how far a ranking can be trusted."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from aerocues.cli.scoring import (
+    AggregationOption,
+    AlphaOption,
+    CriteriaOption,
+    DatasetOption,
+    FailuresOption,
+    PresetOption,
+    ReconstructionOption,
+    ResultsArgument,
+    SeedOption,
+    WeightsOption,
+)
+
+if TYPE_CHECKING:
+    from aerocues.scoring.cues import Scores
+    from aerocues.scoring.validation import Validation
+
+
+def validate(
+    folder: ResultsArgument,
+    preset: PresetOption = None,
+    criteria: CriteriaOption = None,
+    failures: FailuresOption = None,
+    alpha: AlphaOption = None,
+    weights: WeightsOption = None,
+    aggregation: AggregationOption = None,
+    reconstruction: ReconstructionOption = None,
+    dataset: DatasetOption = None,
+    speed: Annotated[
+        str | None, typer.Option(metavar="CRITERION", help="First axis of the Pareto front.")
+    ] = None,
+    quality: Annotated[
+        str | None, typer.Option(metavar="CRITERION", help="Second axis of the Pareto front.")
+    ] = None,
+    seed: SeedOption = 0,
+    top: Annotated[int, typer.Option(min=2, metavar="N", help="Length of lists.")] = 10,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Tell how far the ranking depends on choices, and what other methods would say."""
+    import aerocues
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.scoring import table_and_settings
+    from aerocues.cli.validation_tables import print_validation
+    from aerocues.scoring.cues import score
+    from aerocues.scoring.validation import validate as examine
+
+    with interruptible():
+        measured, settings = table_and_settings(
+            aerocues.Results(folder),
+            preset=preset,
+            criteria=criteria,
+            reconstruction=reconstruction,
+            dataset=dataset,
+            failures=failures,
+            alpha=alpha,
+            weights=weights,
+            aggregation=aggregation,
+        )
+        scores = score(measured.table, settings)
+        found = examine(scores, speed=speed, quality=quality, shortlist=top, seed=seed)
+    if as_json:
+        typer.echo(json.dumps(_facts(scores, found), indent=2))
+    else:
+        print_validation(scores, found, measured, top)
+
+
+def _facts(scores: Scores, found: Validation) -> dict[str, Any]:
+    names = scores.table.alternatives
+    facts: dict[str, Any] = {
+        "alpha": matrix_facts(found.alpha.names, found.alpha.correlation, found.alpha.best),
+        "aggregation": matrix_facts(
+            found.aggregation.names, found.aggregation.correlation, found.aggregation.best
+        ),
+        "criterion_left_out": matrix_facts(
+            found.criterion_left_out.names,
+            found.criterion_left_out.correlation,
+            found.criterion_left_out.best,
+        ),
+        "criteria_correlation": matrix_facts(
+            scores.table.criterion_names, found.criteria_correlation
+        ),
+        "hierarchies": {name: frame.to_dicts() for name, frame in found.hierarchies.items()},
+        "pareto": {
+            "criteria": found.pareto_criteria,
+            "front": [names[position] for position in found.pareto_front],
+        },
+        "rank_reversal": vars(found.rank_reversal) if found.rank_reversal else None,
+    }
+    if isinstance(found.agreement, str):
+        facts["agreement"] = found.agreement
+    else:
+        each = found.agreement
+        facts["agreement"] = matrix_facts(each.names, each.correlation, each.best)
+    if isinstance(found.critical_difference, str):
+        facts["critical_difference"] = found.critical_difference
+    else:
+        ranked = vars(found.critical_difference)
+        facts["critical_difference"] = {
+            **ranked,
+            "mean_ranks": found.critical_difference.mean_ranks.tolist(),
+        }
+    return facts
+
+
+def matrix_facts(names: Any, values: Any, best: Any = None) -> dict[str, Any]:
+    """A matrix as JSON has it; null where a correlation is not defined."""
+    import numpy as np
+
+    listed = [[None if np.isnan(value) else float(value) for value in row] for row in values]
+    return {"names": list(names), "correlation": listed, **({"best": list(best)} if best else {})}

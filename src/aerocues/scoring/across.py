@@ -1,0 +1,167 @@
+"""Compares results folders: data sets with each other, machines with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.comparison import Comparison, Over, compare
+from aerocues.scoring.cues import Scores, score
+from aerocues.scoring.measured import Measured, settings_from, table_of
+from aerocues.scoring.platforms import compare_times
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+class Stored(Measured, Protocol):
+    """Results that lie somewhere."""
+
+    @property
+    def folder(self) -> Path:
+        """Where."""
+        ...
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One data set as one machine measured it.
+
+    Attributes
+    ----------
+    name : str
+        The dataset, with the machine or the folder where that alone is ambiguous.
+    dataset, machine : str
+    rows : pl.DataFrame
+    scores : Scores
+    preset : str
+    """
+
+    name: str
+    dataset: str
+    machine: str
+    rows: pl.DataFrame
+    scores: Scores
+    preset: str
+
+
+@dataclass(frozen=True)
+class Machines:
+    """The same data set on two machines.
+
+    Attributes
+    ----------
+    first, second : Entry
+    rankings : Comparison
+        Of the two.
+    times : pl.DataFrame or str
+        See `platforms.compare_times`; or why they cannot be compared.
+    """
+
+    first: Entry
+    second: Entry
+    rankings: Comparison
+    times: pl.DataFrame | str
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Rows of one dataset and machine, with the reconstructions that belong to them."""
+
+    rows: pl.DataFrame
+    models: pl.DataFrame
+
+    def table(self) -> pl.DataFrame:
+        return self.rows
+
+    def reconstructions(self) -> pl.DataFrame:
+        return self.models
+
+
+def entries_of(
+    results: Sequence[Stored],
+    preset: str | None = None,
+    *,
+    criteria: Sequence[str] | None = None,
+    reconstruction: bool | None = None,
+    **changes: object,
+) -> list[Entry]:
+    """Score every data set in some results, each machine by itself.
+
+    Parameters
+    ----------
+    results : sequence of Stored
+    preset, criteria, reconstruction
+        See `measured.table_of`.
+    **changes
+        Of the preset's settings; None changes nothing.
+
+    Raises
+    ------
+    ScoreError
+        If one of them cannot be scored.
+    """
+    found: list[tuple[Path, Entry]] = []
+    for each in results:
+        models = each.reconstructions()
+        for (dataset, machine), rows in _by_dataset_and_machine(each.table()):
+            measured = table_of(
+                _Rows(rows, models), preset, criteria=criteria, reconstruction=reconstruction
+            )
+            scores = score(measured.table, settings_from(measured.preset, **changes))
+            entry = Entry(dataset, dataset, machine, rows, scores, measured.preset.name)
+            found.append((each.folder, entry))
+    presets = sorted({entry.preset for _, entry in found})
+    if len(presets) > 1:
+        raise ScoreError(
+            f"the results suit different presets ({', '.join(presets)}); choose one with --preset"
+        )
+    return _with_names(found)
+
+
+def _by_dataset_and_machine(
+    rows: pl.DataFrame,
+) -> list[tuple[tuple[str, str], pl.DataFrame]]:
+    groups = rows.group_by("dataset", "machine", maintain_order=True)
+    return [((str(dataset), str(machine)), group) for (dataset, machine), group in groups]
+
+
+def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
+    """The shortest names that tell all entries apart."""
+    for form in ("{dataset}", "{dataset} ({machine})", "{folder}", "{folder} {dataset}"):
+        names = [
+            form.format(dataset=entry.dataset, machine=entry.machine, folder=folder.name)
+            for folder, entry in found
+        ]
+        if len(set(names)) == len(names):
+            break
+    else:
+        names = [f"{number + 1} {entry.dataset}" for number, (_, entry) in enumerate(found)]
+    return [replace(entry, name=name) for name, (_, entry) in zip(names, found, strict=True)]
+
+
+def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Comparison:
+    """Compare the rankings of all entries; see `comparison.compare`."""
+    return compare({entry.name: entry.scores for entry in entries}, over)
+
+
+def compare_machines(entries: Sequence[Entry], over: Over = "pairwise") -> list[Machines]:
+    """Compare every two entries that are the same data set on different machines."""
+    return [
+        _two_machines(first, second, over)
+        for first, second in combinations(entries, 2)
+        if first.dataset == second.dataset and first.machine != second.machine
+    ]
+
+
+def _two_machines(first: Entry, second: Entry, over: Over) -> Machines:
+    rankings: Mapping[str, Scores] = {first.name: first.scores, second.name: second.scores}
+    try:
+        times: pl.DataFrame | str = compare_times(first.rows, second.rows)
+    except ScoreError as error:
+        times = str(error)
+    return Machines(first, second, compare(rankings, over), times)

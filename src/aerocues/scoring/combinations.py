@@ -1,0 +1,146 @@
+"""Combinations of detector, descriptor, norm and matcher as a decision table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.settings import ScorePreset, preset_named
+from aerocues.scoring.table import DecisionTable
+
+METHODS = ("detector", "descriptor", "norm", "matcher")
+PAIR = ("dataset", "sequence", "image_1", "image_2", "pair")
+COMBINATION = "combination"
+# By what scores are grouped: the plural, and the methods that make a label.
+COMPONENTS: dict[str, tuple[str, ...]] = {
+    "detectors": ("detector",),
+    "descriptors": ("descriptor",),
+    "detector-descriptor pairs": ("detector", "descriptor"),
+    "norms": ("norm",),
+    "matchers": ("matcher",),
+}
+SUCCESS = ("ok",)
+SUCCESS_WITHOUT_CHANCE_TEST = ("ok", "chance")
+
+
+def has_chance_test(rows: pl.DataFrame) -> bool:
+    """Whether inliers beyond chance were measured."""
+    return "chance_inliers" in rows.columns and rows["chance_inliers"].is_not_null().any()
+
+
+def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
+    """The default where inliers beyond chance were measured, else that of the thesis."""
+    return preset_named("default" if has_chance_test(rows) else "thesis")
+
+
+def decision_table(
+    rows: pl.DataFrame,
+    criteria: Sequence[Criterion],
+    *,
+    reconstructions: pl.DataFrame | None = None,
+    chance_fails: bool = True,
+) -> DecisionTable:
+    """Arrange measured rows: combinations x image pairs x criteria.
+
+    Parameters
+    ----------
+    rows : pl.DataFrame
+        One row a pair and combination, of one dataset: ``detector, descriptor, norm, matcher,
+        pair, status`` and what the criteria need; ``sequence`` where there are several.
+    criteria : sequence of Criterion
+    reconstructions : pl.DataFrame, optional
+        One row a combination, with ``status`` and what the criteria of reconstruction need. A
+        combination without a row was not reconstructed, and has no score by such criteria.
+    chance_fails : bool
+        Whether a pair with the status ``chance`` has failed.
+
+    Raises
+    ------
+    ScoreError
+        If the rows are of several datasets, there are none, or a column is missing.
+    """
+    if rows.is_empty():
+        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+    datasets = rows["dataset"].unique().sort().to_list()
+    if len(datasets) > 1:
+        raise ScoreError(f"the rows are of several datasets; choose one of {', '.join(datasets)}")
+    by_pair = [criterion for criterion in criteria if not criterion.reconstruction]
+    if not by_pair:
+        raise ScoreError("all criteria are of the reconstruction; add one of the image pairs")
+    succeeded = SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
+    table = DecisionTable.from_frame(
+        _named(_without_failures(rows, succeeded)),
+        alternative=COMBINATION,
+        repeat="pair",
+        block="sequence",
+        criteria=by_pair,
+    )
+    labels = [name.split("-") for name in table.alternatives]
+    table = replace(
+        table,
+        components={
+            component: tuple(
+                "-".join(parts[METHODS.index(method)] for method in methods) for parts in labels
+            )
+            for component, methods in COMPONENTS.items()
+        },
+    )
+    of_models = [criterion for criterion in criteria if criterion.reconstruction]
+    if not of_models:
+        return table
+    if reconstructions is None or reconstructions.is_empty():
+        names = ", ".join(criterion.name for criterion in of_models)
+        raise ScoreError(f"there are no reconstructions for {names}; leave these criteria out")
+    return _with_reconstructions(table, reconstructions, of_models, criteria)
+
+
+def _named(rows: pl.DataFrame) -> pl.DataFrame:
+    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    sequence = pl.col("sequence").fill_null("") if "sequence" in rows.columns else pl.lit("")
+    return rows.with_columns(name, sequence.alias("sequence")).sort("pair", COMBINATION)
+
+
+def _without_failures(rows: pl.DataFrame, succeeded: Sequence[str]) -> pl.DataFrame:
+    """The rows with no number left in those that failed."""
+    numbers = [
+        name
+        for name, kind in rows.schema.items()
+        if kind.is_numeric() and name not in (*METHODS, *PAIR)
+    ]
+    kept = pl.col("status").is_in(succeeded)
+    return rows.with_columns(pl.when(kept).then(pl.col(numbers)))
+
+
+def _with_reconstructions(
+    table: DecisionTable,
+    reconstructions: pl.DataFrame,
+    of_models: Sequence[Criterion],
+    criteria: Sequence[Criterion],
+) -> DecisionTable:
+    models = DecisionTable.from_frame(
+        _without_failures(reconstructions, SUCCESS).with_columns(
+            pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+        ),
+        alternative=COMBINATION,
+        criteria=of_models,
+    )
+    position = {name: number for number, name in enumerate(models.alternatives)}
+    found = [position.get(name, -1) for name in table.alternatives]
+    known = np.array(found) >= 0
+    if not known.any():
+        raise ScoreError("none of the combinations was reconstructed; leave these criteria out")
+    shape = (len(table.alternatives), len(table.repeats), len(of_models))
+    values = np.where(known[:, None, None], models.values[found], np.nan)
+    failed = known[:, None, None] & models.failed[found]
+    order = [*(each for each in criteria if not each.reconstruction), *of_models]
+    return replace(
+        table,
+        criteria=tuple(order),
+        values=np.concatenate([table.values, np.broadcast_to(values, shape)], axis=2),
+        failed=np.concatenate([table.failed, np.broadcast_to(failed, shape)], axis=2),
+    )

@@ -1,0 +1,179 @@
+"""Scores measured results: from a results folder to a ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.bootstrap import RESAMPLES
+from aerocues.scoring.combinations import METHODS, decision_table, has_chance_test, suitable_preset
+from aerocues.scoring.criteria import Criterion, criteria_named
+from aerocues.scoring.ranking import TOP, Interval, Ranking, rank_alternatives
+from aerocues.scoring.settings import ScorePreset, ScoreSettings, preset_named
+from aerocues.scoring.table import DecisionTable
+
+if TYPE_CHECKING:
+    import polars as pl
+
+# Where fewer were reconstructed, they are a choice of the user's, and the others keep their score.
+ENOUGH_RECONSTRUCTED = 0.5
+
+
+class Measured(Protocol):
+    """What is asked of results."""
+
+    def table(self) -> pl.DataFrame:
+        """Rows of image pairs."""
+        ...
+
+    def reconstructions(self) -> pl.DataFrame:
+        """Rows of reconstructions; none where there are none."""
+        ...
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """The decision table of one dataset, and the preset that it was made by."""
+
+    dataset: str
+    table: DecisionTable
+    preset: ScorePreset
+
+
+def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
+    """The rows of one dataset.
+
+    Raises
+    ------
+    ScoreError
+        If there is no such dataset, or several and none was named.
+    """
+    import polars as pl
+
+    datasets = rows["dataset"].unique().sort().to_list()
+    if dataset is None and len(datasets) > 1:
+        raise ScoreError(f"there are several datasets; choose one of {', '.join(datasets)}")
+    if dataset is not None and dataset not in datasets:
+        raise ScoreError(f"there is no dataset {dataset!r}; choose from {', '.join(datasets)}")
+    return rows if dataset is None else rows.filter(pl.col("dataset") == dataset)
+
+
+def settings_from(preset: ScorePreset, **changes: object) -> ScoreSettings:
+    """Settings of a preset, with what is not None in their place."""
+    given = {name: value for name, value in changes.items() if value is not None}
+    return replace(preset.settings, **given)  # type: ignore[arg-type]
+
+
+def table_of(
+    results: Measured,
+    preset: str | None = None,
+    *,
+    criteria: Sequence[str] | None = None,
+    dataset: str | None = None,
+    reconstruction: bool | None = None,
+) -> MeasuredTable:
+    """Arrange the measurements of one dataset for scoring.
+
+    Parameters
+    ----------
+    results : Measured
+        Such as `aerocues.Results`.
+    preset : str, optional
+        A row of `settings.PRESETS`; the one that suits the measurements by default.
+    criteria : sequence of str, optional
+        In place of the preset's.
+    dataset : str, optional
+        Needed where there are several.
+    reconstruction : bool, optional
+        Whether to add the preset's criteria of reconstruction; by default, where most
+        combinations were reconstructed.
+
+    Raises
+    ------
+    ScoreError
+        If something does not exist or was not measured.
+    """
+    import polars as pl
+
+    rows = rows_of_dataset(results.table(), dataset)
+    if rows.is_empty():
+        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+    chosen = preset_named(preset) if preset else suitable_preset(rows)
+    models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
+    names = chosen.criteria if criteria is None else tuple(criteria)
+    if reconstruction is None:
+        measured = rows.select(METHODS).unique()
+        share = measured.join(models, on=METHODS, how="semi").height / measured.height
+        reconstruction = criteria is None and share >= ENOUGH_RECONSTRUCTED
+    if reconstruction:
+        names = (*names, *(name for name in chosen.reconstruction_criteria if name not in names))
+    listed = criteria_named(names)
+    if not has_chance_test(rows):
+        _refuse_chance(listed)
+    table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
+    return MeasuredTable(rows["dataset"][0], table, chosen)
+
+
+def _refuse_chance(criteria: Sequence[Criterion]) -> None:
+    needed = [each.name for each in criteria if "chance" in each.source or "excess" in each.source]
+    if needed:
+        raise ScoreError(
+            f"no row has inliers beyond chance, which {needed[0]} needs; score with --preset "
+            "thesis, or measure with 'aerocues run --preset default'"
+        )
+
+
+def score_results(
+    results: Measured,
+    preset: str | None = None,
+    *,
+    criteria: Sequence[str] | None = None,
+    dataset: str | None = None,
+    reconstruction: bool | None = None,
+    settings: ScoreSettings | None = None,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+    interval: Interval = "joint",
+    test: str = "bootstrap",
+    top: int = TOP,
+) -> Ranking:
+    """Rank the combinations of measured results by CUES.
+
+    Parameters
+    ----------
+    results : Measured
+        Such as `aerocues.Results`.
+    preset : str, optional
+        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; the
+        one that suits the measurements by default.
+    criteria : sequence of str, optional
+        Names of rows of `criteria.CRITERIA`, in place of the preset's.
+    dataset : str, optional
+        Needed where there are several.
+    reconstruction : bool, optional
+        Whether to add the criteria of reconstruction; by default, where most combinations were
+        reconstructed.
+    settings : ScoreSettings, optional
+        In place of the preset's.
+    resamples, seed, interval, test, top
+        See `ranking.rank_alternatives`.
+
+    Raises
+    ------
+    ScoreError
+        If something does not exist or was not measured.
+    """
+    found = table_of(
+        results, preset, criteria=criteria, dataset=dataset, reconstruction=reconstruction
+    )
+    return rank_alternatives(
+        found.table,
+        settings or found.preset.settings,
+        resamples=resamples,
+        seed=seed,
+        interval=interval,
+        test=test,
+        top=top,
+    )

@@ -1,0 +1,99 @@
+"""The same data set measured on two machines: what changes, and by how much time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from aerocues.errors import ScoreError
+
+METHODS = ("detector", "descriptor", "norm", "matcher")
+KEY = (*METHODS, "pair")
+MEASURED = ("ok", "chance")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage, and the columns whose sum is its time."""
+
+    name: str
+    columns: tuple[str, ...]
+
+
+STAGES: tuple[Stage, ...] = (
+    Stage("detect", ("detect_seconds_1", "detect_seconds_2")),
+    Stage("describe", ("describe_seconds_1", "describe_seconds_2")),
+    Stage("match", ("match_seconds",)),
+    Stage("verify", ("verify_seconds",)),
+    Stage("total", ("total_seconds",)),
+)
+
+
+def compare_times(first: pl.DataFrame, second: pl.DataFrame) -> pl.DataFrame:
+    """Compare the times of the same combinations on the same pairs.
+
+    Quality ought not to depend on the machine; times do, and by more for some stages than for
+    others.
+
+    Parameters
+    ----------
+    first, second : pl.DataFrame
+        Rows of one dataset, measured on two machines.
+
+    Returns
+    -------
+    pl.DataFrame
+        One row a stage that both measured: ``stage``; ``rows`` (measured on both);
+        ``first_seconds, second_seconds`` (medians); ``ratio`` of second to first (geometric mean
+        over the rows) with ``ratio_low, ratio_high`` (5th and 95th percentile of the rows); and
+        ``rank_correlation`` (Spearman, of the combinations' mean times).
+
+    Raises
+    ------
+    ScoreError
+        If no stage was measured on both machines for the same rows.
+    """
+    joined = _of_success(first).join(_of_success(second), on=KEY, suffix="_of_second")
+    stages = [row for stage in STAGES if (row := _compare_stage(joined, stage)) is not None]
+    if not stages:
+        raise ScoreError(
+            "the two results share no row with times; measure the same data set with the same "
+            "combinations on both machines"
+        )
+    return pl.DataFrame(stages)
+
+
+def _of_success(rows: pl.DataFrame) -> pl.DataFrame:
+    columns = {column for stage in STAGES for column in stage.columns} & set(rows.columns)
+    return rows.filter(pl.col("status").is_in(MEASURED)).select(*KEY, *sorted(columns))
+
+
+def _compare_stage(joined: pl.DataFrame, stage: Stage) -> dict[str, object] | None:
+    from aerocues.scoring.correlation import rank_correlation
+
+    of_second = tuple(f"{name}_of_second" for name in stage.columns)
+    if not {*stage.columns, *of_second} <= set(joined.columns):
+        return None
+    times = joined.select(
+        *METHODS,
+        pl.sum_horizontal(pl.col(stage.columns), ignore_nulls=False).alias("first"),
+        pl.sum_horizontal(pl.col(of_second), ignore_nulls=False).alias("second"),
+    ).filter(pl.col("first") > 0, pl.col("second") > 0)
+    if times.is_empty():
+        return None
+    ratio = (times["second"] / times["first"]).to_numpy()
+    means = times.group_by(METHODS).agg(pl.col("first", "second").mean())
+    correlation = rank_correlation(means.select("first", "second").to_numpy().T)[0, 1]
+    low, high = np.quantile(ratio, [0.05, 0.95])
+    return {
+        "stage": stage.name,
+        "rows": len(times),
+        "first_seconds": times["first"].median(),
+        "second_seconds": times["second"].median(),
+        "ratio": float(np.exp(np.log(ratio).mean())),
+        "ratio_low": float(low),
+        "ratio_high": float(high),
+        "rank_correlation": None if np.isnan(correlation) else float(correlation),
+    }

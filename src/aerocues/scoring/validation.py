@@ -1,0 +1,135 @@
+"""Everything that tells how far a ranking can be trusted, in one go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import MethodUnavailableError, ScoreError
+from aerocues.scoring.agreement import Agreement, agreement
+from aerocues.scoring.correlation import criteria_correlation
+from aerocues.scoring.cues import Scores
+from aerocues.scoring.friedman import CriticalDifference, critical_difference
+from aerocues.scoring.hierarchy import hierarchy
+from aerocues.scoring.pareto import pareto_of_criteria
+from aerocues.scoring.rank_reversal import RankReversal, rank_reversal
+from aerocues.scoring.sensitivity import (
+    Variants,
+    by_aggregation,
+    by_alpha,
+    by_criterion_left_out,
+)
+
+if TYPE_CHECKING:
+    import polars as pl
+
+SHORTLIST = 10
+# The first of each that a table has: what is fast, and what is good.
+SPEED = (
+    "seconds_per_1k_excess_inliers",
+    "seconds_per_1k_inliers",
+    "seconds_per_1k_matches",
+    "total_seconds",
+)
+QUALITY = ("precision_beyond_chance", "precision", "f1_score", "inliers")
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What `validate` finds.
+
+    Attributes
+    ----------
+    alpha, aggregation, criterion_left_out : Variants
+    agreement : Agreement or str
+        Or why it is not known.
+    criteria_correlation : (criteria, criteria) float64
+        Pearson's.
+    hierarchies : dict of pl.DataFrame
+        By component.
+    pareto_criteria : tuple of str
+        Speed and quality; empty where the table has no such criteria.
+    pareto_front : (alternatives on the front,) int64
+        Positions, the fastest first.
+    rank_reversal : RankReversal or None
+        None with a single alternative.
+    critical_difference : CriticalDifference or str
+        Of the best few; or why it is not known.
+    """
+
+    alpha: Variants
+    aggregation: Variants
+    criterion_left_out: Variants
+    agreement: Agreement | str
+    criteria_correlation: NDArray[np.float64]
+    hierarchies: dict[str, pl.DataFrame]
+    pareto_criteria: tuple[str, ...]
+    pareto_front: NDArray[np.int64]
+    rank_reversal: RankReversal | None
+    critical_difference: CriticalDifference | str
+
+
+def validate(
+    scores: Scores,
+    *,
+    speed: str | None = None,
+    quality: str | None = None,
+    shortlist: int = SHORTLIST,
+    seed: int = 0,
+) -> Validation:
+    """Examine a ranking as the thesis does, and further.
+
+    Parameters
+    ----------
+    scores : Scores
+    speed, quality : str, optional
+        Criteria of the Pareto front; by default the first that the table has of `SPEED` and
+        `QUALITY`.
+    shortlist : int
+        How many of the best take part in Friedman's test.
+    seed : int
+
+    Raises
+    ------
+    ScoreError
+        If a criterion is not in the table.
+    """
+    chosen = _pareto_criteria(scores, speed, quality)
+    return Validation(
+        alpha=by_alpha(scores),
+        aggregation=by_aggregation(scores),
+        criterion_left_out=by_criterion_left_out(scores),
+        agreement=_agreement(scores),
+        criteria_correlation=criteria_correlation(scores),
+        hierarchies=hierarchy(scores),
+        pareto_criteria=chosen,
+        pareto_front=pareto_of_criteria(scores, *chosen) if chosen else np.array([], np.int64),
+        rank_reversal=rank_reversal(scores, seed=seed) if len(scores.order) > 1 else None,
+        critical_difference=_critical_difference(scores, shortlist),
+    )
+
+
+def _pareto_criteria(
+    scores: Scores, speed: str | None, quality: str | None
+) -> tuple[str, str] | tuple[()]:
+    names = scores.table.criterion_names
+    first = speed or next((name for name in SPEED if name in names), None)
+    second = quality or next((name for name in QUALITY if name in names), None)
+    return (first, second) if first and second else ()
+
+
+def _agreement(scores: Scores) -> Agreement | str:
+    try:
+        return agreement(scores)
+    except MethodUnavailableError as error:
+        return str(error)
+
+
+def _critical_difference(scores: Scores, shortlist: int) -> CriticalDifference | str:
+    try:
+        return critical_difference(scores, scores.order[:shortlist].tolist())
+    except ScoreError as error:
+        return str(error)

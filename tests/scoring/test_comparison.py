@@ -1,0 +1,129 @@
+"""Rankings across data sets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import kendalltau, spearmanr
+
+from aerocues.errors import ScoreError
+from aerocues.scoring import score
+from aerocues.scoring.across import compare_datasets, compare_machines, entries_of
+from aerocues.scoring.comparison import compare
+from aerocues.scoring.cues import Scores
+from tests.scoring.measurements import Stored, row, rows
+from tests.scoring.tables import table_of
+
+NAMES = ("a", "b", "c", "d", "e")
+
+
+def scored(values: dict[str, float]) -> Scores:
+    """Scores that fall as given: one criterion, one repeat."""
+    array = np.array(list(values.values())).reshape(-1, 1, 1)
+    return score(table_of(array, names=list(values)))
+
+
+def test_correlations_are_those_of_scipy_over_what_both_have() -> None:
+    first = dict(zip(NAMES, (5.0, 4, 3, 2, 1), strict=True))
+    second = dict(zip(NAMES, (4.0, 5, 1, 2, 3), strict=True))
+    third = {"a": 1.0, "b": 2.0, "c": 3.0, "x": 9.0}
+    rankings = {"one": scored(first), "two": scored(second), "three": scored(third)}
+    found = compare(rankings)
+    values = list(first.values()), list(second.values())
+    assert found.spearman()[0, 1] == pytest.approx(spearmanr(*values).statistic)
+    assert found.kendall()[0, 1] == pytest.approx(kendalltau(*values).statistic)
+    assert found.spearman()[0, 2] == pytest.approx(-1)
+    np.testing.assert_array_equal(found.shared(), [[5, 5, 3], [5, 5, 3], [3, 3, 4]])
+    in_all = compare(rankings, "all")
+    np.testing.assert_array_equal(in_all.shared(), np.full((3, 3), 3))
+    expected = spearmanr(values[0][:3], values[1][:3]).statistic
+    assert in_all.spearman()[0, 1] == pytest.approx(expected)
+
+
+def test_versatility_is_mean_least_and_spread() -> None:
+    rankings = {
+        "one": scored({"a": 1.0, "b": 0.25, "c": 0.0}),
+        "two": scored({"a": 0.0, "b": 1.0, "c": 0.25, "x": 0.5}),
+    }
+    found = compare(rankings).versatility()
+    # A single criterion weighs 1; CUES is the root of the normalised value.
+    assert found["alternative"].to_list() == ["b", "a", "c", "x"]
+    b = found.row(0, named=True)
+    assert (b["mean"], b["min"], b["spread"]) == pytest.approx((0.75, 0.5, 0.5))
+    assert b["standard_deviation"] == pytest.approx(0.25)
+    assert (b["mean_rank"], b["worst_rank"], b["rankings"]) == (1.5, 2, 2)
+    assert (b["one"], b["two"]) == pytest.approx((0.5, 1.0))
+    x = found.row(3, named=True)
+    assert (x["rankings"], x["one"]) == (1, None)
+
+
+def test_what_cannot_be_compared_is_told() -> None:
+    one = scored({"a": 1.0, "b": 2.0})
+    with pytest.raises(ScoreError, match="two results or more"):
+        compare({"one": one})
+    with pytest.raises(ScoreError, match="no alternative is in two"):
+        compare({"one": one, "two": scored({"c": 1.0, "d": 2.0})})
+    with pytest.raises(ScoreError, match="choose pairwise or all"):
+        compare({"one": one, "two": one}, "some")  # type: ignore[arg-type]
+
+
+class InFolder(Stored):
+    """Made-up results that claim to lie somewhere."""
+
+    def __init__(self, folder: str, **changes: object) -> None:
+        combinations = ("ORB-ORB-HAM-BF", "SIFT-SIFT-L2-BF", "KAZE-KAZE-L2-BF")
+        super().__init__(
+            rows(
+                *(
+                    row(name, pair, inliers=30 + 10 * number + pair, **changes)
+                    for number, name in enumerate(combinations)
+                    for pair in (0, 1)
+                )
+            )
+        )
+        self.folder = Path(folder)
+
+
+@pytest.mark.parametrize(
+    ("results", "names"),
+    [
+        ([InFolder("r", dataset="x"), InFolder("s", dataset="y")], ["x", "y"]),
+        ([InFolder("r"), InFolder("s", machine="board")], ["flight (desk)", "flight (board)"]),
+        ([InFolder("r"), InFolder("s")], ["r", "s"]),
+        ([InFolder("p/r"), InFolder("q/r")], ["1 flight", "2 flight"]),
+    ],
+)
+def test_results_have_the_shortest_names_that_differ(
+    results: list[InFolder], names: list[str]
+) -> None:
+    assert [entry.name for entry in entries_of(results)] == names
+
+
+def test_one_folder_may_hold_several_datasets() -> None:
+    both = InFolder("r")
+    both._table = both.table().vstack(InFolder("s", dataset="other").table())
+    entries = entries_of([both])
+    assert [entry.name for entry in entries] == ["flight", "other"]
+    assert compare_datasets(entries).spearman()[0, 1] == pytest.approx(1)
+    assert compare_machines(entries) == []
+
+
+def test_rankings_by_different_presets_are_not_compared() -> None:
+    untested = InFolder("s", chance_inliers=None, excess_inliers=None, dataset="other")
+    with pytest.raises(ScoreError, match="choose one with --preset"):
+        entries_of([InFolder("r"), untested])
+    assert len(entries_of([InFolder("r"), untested], "thesis")) == 2
+
+
+def test_the_same_data_set_on_two_machines_is_compared_by_times() -> None:
+    slow = InFolder("s", machine="board", match_seconds=1.2, total_seconds=2.0)
+    entries = entries_of([InFolder("r"), slow, InFolder("t", dataset="other")])
+    (found,) = compare_machines(entries)
+    assert (found.first.machine, found.second.machine) == ("desk", "board")
+    assert not isinstance(found.times, str)
+    by_stage = {each["stage"]: each for each in found.times.to_dicts()}
+    assert by_stage["match"]["ratio"] == pytest.approx(3)
+    assert by_stage["total"]["ratio"] == pytest.approx(2)
+    assert by_stage["detect"]["ratio"] == pytest.approx(1)
