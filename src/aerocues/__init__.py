@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from aerocues.datasets.catalog import open_dataset
     from aerocues.datasets.dataset import Dataset
     from aerocues.errors import AerocuesError
+    from aerocues.evaluation.importing import import_results
     from aerocues.evaluation.results import Results
     from aerocues.evaluation.run import Limits, Observer, run
     from aerocues.evaluation.summary import best_combinations
@@ -32,6 +33,7 @@ _MODULES = {
     "Limits": "evaluation.run",
     "Observer": "evaluation.run",
     "Results": "evaluation.results",
+    "import_results": "evaluation.importing",
     "best_combinations": "evaluation.summary",
     "Combination": "methods.combination",
     "Keypoints": "methods.arrays",
@@ -52,6 +54,7 @@ __all__ = [
     "Results",
     "__version__",
     "best_combinations",
+    "import_results",
     "open_dataset",
     "run",
 ]

@@ -9,7 +9,7 @@ from typing import Annotated, Any, cast
 
 import typer
 
-from aerocues.cli import datasets, methods, results, run, status
+from aerocues.cli import datasets, importing, methods, results, run, status
 from aerocues.errors import AerocuesError
 
 BAD_INPUT = 2
@@ -29,6 +29,7 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("status")(status.status)
 app.command("results")(results.results)
+app.command("import")(importing.import_table)
 app.add_typer(methods.app, name="methods")
 app.add_typer(datasets.app, name="datasets")
 

@@ -1,4 +1,4 @@
-"""Tables as files: CSV, Parquet and JSON."""
+"""Tables as files: CSV, Parquet, JSON, Markdown and LaTeX."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from aerocues.errors import StoreError
+from aerocues.evaluation.typesetting import as_latex, as_markdown
 
 if TYPE_CHECKING:
     import polars as pl
@@ -17,7 +18,11 @@ WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
     "csv": lambda table, file: table.write_csv(file),
     "parquet": lambda table, file: table.write_parquet(file),
     "json": lambda table, file: file.write(table.write_json().encode()),
+    "markdown": lambda table, file: file.write(as_markdown(table).encode()),
+    "latex": lambda table, file: file.write(as_latex(table).encode()),
 }
+# These hold lists and the like, too.
+FORMS_OF_ANYTHING = ("parquet", "json")
 
 
 def table_content(table: pl.DataFrame, form: str) -> memoryview:
@@ -28,7 +33,7 @@ def table_content(table: pl.DataFrame, form: str) -> memoryview:
     try:
         WRITERS[form](table, content)
     except pl.exceptions.PolarsError as error:
-        others = " or ".join(f"--{name}" for name in WRITERS if name != form)
+        others = " or ".join(f"--{name}" for name in FORMS_OF_ANYTHING if name != form)
         reason = " ".join(str(error).split())
         raise StoreError(
             f"this table cannot be written as {form.upper()}: {reason}; use {others}"
@@ -44,7 +49,8 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     table : pl.DataFrame
     target : path
         A file, or a device or pipe.
-    form : {"csv", "parquet", "json"}
+    form : {"csv", "parquet", "json", "markdown", "latex"}
+        The last two are for people: numbers are rounded to four digits.
 
     Raises
     ------
@@ -52,7 +58,11 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
         If it cannot be written, or the form has no place for what it holds.
     """
     # Not to the file at once: polars has errors of its own for a disk that is full.
-    content = table_content(table, form)
+    write_file(target, table_content(table, form))
+
+
+def write_file(target: Path, content: bytes | memoryview) -> None:
+    """Write a file, whole or not at all, or to a device or pipe; StoreError if that fails."""
     path = target.expanduser().resolve()  # a link stays a link
     is_special = path.exists() and not path.is_file() and not path.is_dir()
     beside = path if is_special else path.with_name(f".{path.name}.{os.getpid()}.tmp")

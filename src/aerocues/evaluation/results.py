@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,19 +41,27 @@ class Results:
     Parameters
     ----------
     folder : path
+        The folder, or the file that `pack` made of it.
 
     Raises
     ------
     StoreError
-        If `folder` is no results folder.
+        If `folder` is no results folder and no packed one.
     """
 
     def __init__(self, folder: str | Path) -> None:
-        self._store = Store.open(Path(folder))
+        self._path = place = Path(folder)
+        if place.is_file():
+            from aerocues.evaluation.packing import unpack
+
+            place = unpack(place)
+            weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
+        self._store = Store.open(place)
 
     @property
     def folder(self) -> Path:
-        return self._store.folder
+        """The folder, or the packed file, that was opened."""
+        return self._path
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -62,8 +72,33 @@ class Results:
         """One row a pair and combination, in a fixed order; columns as in `schema.COLUMNS`."""
         return self._store.table()
 
+    def reconstructions(self) -> pl.DataFrame:
+        """One row a dataset and combination; columns as in `schema.RECONSTRUCTIONS`."""
+        return self._store.reconstructions()
+
+    def pack(self, file: str | Path) -> Path:
+        """Write everything that the folder holds into one file, for `Results` to open elsewhere.
+
+        Unzipped, it is a results folder again, which `aerocues.run` continues.
+
+        Parameters
+        ----------
+        file : path
+            A zip file; one that is there is replaced, whole or not at all.
+
+        Raises
+        ------
+        StoreError
+            If the folder cannot be read or the file not be written.
+        """
+        from aerocues.evaluation.export import write_file
+        from aerocues.evaluation.packing import packed
+
+        write_file(Path(file), packed(self._store))
+        return Path(file)
+
     def sql(self, query: str) -> pl.DataFrame:
-        """Answer a SQL query over the table ``results``.
+        """Answer a SQL query over the tables ``results`` and ``reconstructions``.
 
         Raises
         ------
@@ -73,7 +108,8 @@ class Results:
         import polars as pl
 
         try:
-            return pl.SQLContext(results=self.table()).execute(query, eager=True)
+            tables = {"results": self.table(), "reconstructions": self.reconstructions()}
+            return pl.SQLContext(tables).execute(query, eager=True)
         except pl.exceptions.PolarsError as error:
             raise StoreError(
                 f"the query failed: {' '.join(str(error).split())}; the table is called results, "

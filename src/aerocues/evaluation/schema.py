@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -9,6 +10,7 @@ from aerocues.evaluation.metrics import METRICS, Row
 
 ColumnType = Literal["string", "integer", "float"]
 PIXEL_THRESHOLDS = (1, 3, 5)
+RECONSTRUCTION_IDENTITY = ("dataset", "detector", "descriptor", "norm", "matcher")
 
 
 @dataclass(frozen=True)
@@ -156,15 +158,25 @@ COLUMNS: tuple[Column, ...] = (
     *PROVENANCE,
 )
 
+# One row a dataset and combination.
+RECONSTRUCTIONS: tuple[Column, ...] = (
+    *(column for column in IDENTITY if column.name in RECONSTRUCTION_IDENTITY),
+    _text("status", "how the reconstruction ended"),
+    _text("message", "the message of an error, or what is unusual"),
+    Column("reprojection_error", "float", "px", "mean reprojection error of the 3D points"),
+    _count("points_3d", "3D points of the model"),
+    Column("reconstruction_seconds", "float", "s", "wall seconds that the reconstruction took"),
+)
+
 
 def empty_row() -> Row:
     """A row with every column, all unknown."""
     return {column.name: None for column in COLUMNS}
 
 
-def polars_schema() -> dict[str, Any]:
-    """The columns with their polars types."""
+def polars_schema(columns: Sequence[Column] = COLUMNS) -> dict[str, Any]:
+    """Columns with their polars types."""
     import polars as pl
 
     types = {"string": pl.String, "integer": pl.Int64, "float": pl.Float64}
-    return {column.name: types[column.type]() for column in COLUMNS}
+    return {column.name: types[column.type]() for column in columns}

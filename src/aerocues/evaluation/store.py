@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import io
 import json
-import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -14,8 +12,10 @@ from typing import IO, TYPE_CHECKING, Any
 from aerocues.errors import StoreError
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
-from aerocues.evaluation.schema import polars_schema
+from aerocues.evaluation.reconstructions import reconstruction_table
+from aerocues.evaluation.schema import RECONSTRUCTIONS, polars_schema
 from aerocues.evaluation.statuses import STATUSES
+from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
 
 if TYPE_CHECKING:
     import polars as pl
@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 PARTS = "parts"
 RUN = "run.json"
 PLAN = "plan.parquet"
+RECONSTRUCTED = "reconstructions.parquet"
 LOCK = ".lock"
-OWN = (PARTS, RUN, PLAN, LOCK)
+OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, LOCK)
+LONGEST_LIST = 12
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
 
 
@@ -95,6 +97,13 @@ class Store:
     def open(cls, folder: Path) -> Store:
         """Open an existing results folder for reading; StoreError where there is none."""
         if not (folder / RUN).is_file():
+            inner = sorted(run.parent.name for run in folder.glob(f"*/{RUN}"))
+            if inner:
+                more = f" and {len(inner) - LONGEST_LIST} more" if inner[LONGEST_LIST:] else ""
+                raise StoreError(
+                    f"{folder} is a folder of results folders; name one of them, such as "
+                    f"{folder / inner[0]}: {', '.join(inner[:LONGEST_LIST])}{more}"
+                )
             raise StoreError(
                 f"{folder} is no results folder (it has no {RUN}); make one with "
                 f"'aerocues run DATASET -o {folder}'"
@@ -116,27 +125,16 @@ class Store:
         import polars as pl
 
         table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
-        # Not to the disk at once: polars has errors of its own for a disk that is full.
-        content = io.BytesIO()
-        table.write_parquet(content, compression="zstd")
-        self._write(self._parts / f"{name}.parquet", content.getvalue())
+        self._write(self._parts / f"{name}.parquet", parquet_content(table))
 
     def write_run(self, facts: Mapping[str, Any]) -> None:
         """Store the configuration, the versions and the machine of the latest run."""
-        text = json.dumps(facts, indent=2, sort_keys=True, default=str) + "\n"
-        self._write(self.folder / RUN, text.encode())
+        self._write(self.folder / RUN, json_content(facts))
 
     def _write(self, target: Path, content: bytes) -> None:
-        beside = target.with_name(f"{target.name}.{os.getpid()}.tmp")
         try:
-            with beside.open("wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            beside.replace(target)
+            write_whole({target: content})
         except OSError as error:
-            with contextlib.suppress(OSError):
-                beside.unlink(missing_ok=True)
             reason = error.strerror or str(error)
             raise StoreError(
                 f"cannot write {target}: {reason}; what was finished is kept: make room or access "
@@ -145,19 +143,37 @@ class Store:
 
     def write_plan(self, rows: pl.DataFrame) -> None:
         """Add the planned rows of a run; see `planned_rows.merge_plans`."""
-        content = io.BytesIO()
-        merge_plans(self._all_planned(rows), rows).write_parquet(content, compression="zstd")
-        self._write(self.folder / PLAN, content.getvalue())
+        merged = merge_plans(self._all_planned(rows), rows)
+        self._write(self.folder / PLAN, parquet_content(merged))
 
-    def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
+    def write_reconstructions(self, figures: pl.DataFrame) -> None:
+        """Store the figures of 3D reconstructions; those that are there are replaced.
+
+        Parameters
+        ----------
+        figures : pl.DataFrame
+            Columns of `schema.RECONSTRUCTIONS`, one row a dataset and combination; a column that
+            is missing is unknown in all rows.
+        """
+        self._write(self.folder / RECONSTRUCTED, parquet_content(reconstruction_table(figures)))
+
+    def reconstructions(self) -> pl.DataFrame:
+        """The figures of 3D reconstructions, by dataset and combination; often none."""
         import polars as pl
 
-        if not (self.folder / PLAN).is_file():
-            return empty.clear()
-        return self._collect(pl.scan_parquet(self.folder / PLAN))
+        schema = pl.Schema(polars_schema(RECONSTRUCTIONS))
+        if not (self.folder / RECONSTRUCTED).is_file():
+            return pl.DataFrame(schema=schema)
+        file = self.folder / RECONSTRUCTED
+        return self._collect(
+            pl.scan_parquet(file, schema=schema, missing_columns="insert", extra_columns="ignore")
+        )
 
-    def planned(self) -> pl.DataFrame:
-        """The rows that the folder is to hold, under the settings of the latest run."""
+    def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
+        return self.plan() if (self.folder / PLAN).is_file() else empty.clear()
+
+    def plan(self) -> pl.DataFrame:
+        """All planned rows, under whatever settings."""
         import polars as pl
 
         if not (self.folder / PLAN).is_file():
@@ -165,8 +181,13 @@ class Store:
                 f"{self.folder / PLAN} is missing; run the same 'aerocues run' command again to "
                 "restore it"
             )
-        settings = pl.col("settings_key") == self.run().get("settings_key")
-        return self._collect(pl.scan_parquet(self.folder / PLAN).filter(settings))
+        return self._collect(pl.scan_parquet(self.folder / PLAN))
+
+    def planned(self) -> pl.DataFrame:
+        """The rows that the folder is to hold, under the settings of the latest run."""
+        import polars as pl
+
+        return self.plan().filter(pl.col("settings_key") == self.run().get("settings_key"))
 
     def run(self) -> dict[str, Any]:
         """What `write_run` stored last."""
@@ -228,6 +249,13 @@ class Store:
         )
         rows = planned.join(measured, on="row_key").select(list(schema)).sort(IDENTITY_NAMES)
         return self._collect(rows)
+
+    def rows(self) -> pl.DataFrame:
+        """Every stored row as it was written, planned or not, also the same one twice."""
+        import polars as pl
+
+        parts = self.parts()
+        return self._collect(self._scan(parts)) if parts else pl.DataFrame(schema=polars_schema())
 
     def _scan(self, parts: list[Path]) -> pl.LazyFrame:
         import polars as pl

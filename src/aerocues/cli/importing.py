@@ -1,0 +1,64 @@
+"""`aerocues import`: results folders from measurement tables made elsewhere."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from aerocues.evaluation.results import Results
+
+
+def import_table(
+    file: Annotated[Path, typer.Argument(help="Measurements: .csv or .parquet, a row a pair.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="RESULTS",
+            help="Results folder; of several datasets or platforms: a folder of results folders.",
+        ),
+    ],
+    reconstruction: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Figures of 3D reconstructions: .csv or .parquet."),
+    ] = None,
+    dataset: Annotated[str | None, typer.Option(metavar="NAME", help="This dataset only.")] = None,
+    platform: Annotated[
+        str | None, typer.Option(metavar="NAME", help="This platform only.")
+    ] = None,
+) -> None:
+    """Make results folders of measurements that were made elsewhere."""
+    import aerocues
+    from aerocues.cli.interruption import interruptible
+
+    with interruptible():
+        made = aerocues.import_results(
+            file, output, reconstruction=reconstruction, dataset=dataset, platform=platform
+        )
+    _print_folders(made)
+
+
+def _print_folders(made: list[Results]) -> None:
+    from rich.text import Text
+
+    from aerocues.cli.console import plain_table, print_table, standard_output
+
+    console = standard_output()
+    with_figures = any(len(results.reconstructions()) for results in made)
+    headings = ["rows", "combinations", "pairs", *(["reconstructions"] if with_figures else [])]
+    output = plain_table("results folder", *headings, numbers=len(headings))
+    for results in made:
+        table = results.table()
+        counts = [
+            len(table),
+            table.select("detector", "descriptor", "norm", "matcher").n_unique(),
+            table.select("image_1", "image_2").n_unique(),
+        ]
+        if with_figures:
+            counts.append(len(results.reconstructions()))
+        output.add_row(Text(str(results.folder)), *(f"{number:,}" for number in counts))
+    print_table(console, output)

@@ -1,0 +1,55 @@
+"""Files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+def write_whole(contents: Mapping[Path, bytes | memoryview]) -> None:
+    """Write files beside their places and rename them when all are on the disk.
+
+    Until then nothing is replaced, whatever ends the writing; nothing stays beside.
+
+    Raises
+    ------
+    OSError
+        If the disk is full or a folder cannot be written.
+    """
+    with ExitStack() as clean_up:
+        ready: list[tuple[Path, Path]] = []
+        for target, content in contents.items():
+            beside = target.with_name(f"{target.name}.{os.getpid()}.tmp")
+            clean_up.callback(_remove, beside)
+            with beside.open("wb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            ready.append((beside, target))
+        for beside, target in ready:
+            beside.replace(target)
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):  # a folder out of reach is told already
+        path.unlink(missing_ok=True)
+
+
+def parquet_content(table: pl.DataFrame) -> bytes:
+    """A table as the content of a file: polars has errors of its own for a disk that is full."""
+    content = io.BytesIO()
+    table.write_parquet(content, compression="zstd")
+    return content.getvalue()
+
+
+def json_content(facts: Mapping[str, Any]) -> bytes:
+    """Facts about a run as the content of ``run.json``."""
+    return (json.dumps(facts, indent=2, sort_keys=True, default=str) + "\n").encode()
