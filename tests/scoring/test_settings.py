@@ -1,0 +1,54 @@
+"""Settings of a score and their presets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from aerocues.errors import ScoreError
+from aerocues.scoring import PRESETS, ScoreSettings, criteria_named
+from aerocues.scoring.settings import preset_named
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"alpha": 0}, "alpha is 0; give a number above 0"),
+        ({"alpha": -1.0}, "alpha is -1.0"),
+        ({"alpha": float("nan")}, "alpha is nan"),
+        ({"alpha": float("inf")}, "alpha is inf"),
+        ({"weights": ()}, "no weights; choose from entropy"),
+        ({"weights": ("merec",)}, "no method of weighting 'merec'; choose from entropy"),
+        ({"weights": ("pca", "pca")}, "twice"),
+        ({"aggregation": "median"}, "no aggregation 'median'; choose from arithmetic"),
+        ({"failures": "ignore"}, "no treatment of failures 'ignore'; choose from worst, omit"),
+    ],
+)
+def test_settings_that_do_not_exist(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ScoreError, match=message):
+        replace(ScoreSettings(), **changes)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_name_criteria_that_exist(name: str) -> None:
+    preset = preset_named(name)
+    assert preset.name == name
+    pairs = criteria_named(preset.criteria)
+    assert not any(criterion.reconstruction for criterion in pairs)
+    assert all(each.reconstruction for each in criteria_named(preset.reconstruction_criteria))
+    assert len(preset.settings.weights) == 4
+
+
+def test_preset_of_the_thesis_is_as_published() -> None:
+    settings = preset_named("thesis").settings
+    assert settings.failures == "omit"
+    assert settings.alpha == 0.5
+    assert settings.aggregation == "arithmetic"
+    assert settings.weights == ("entropy", "variance", "critic_published", "pca")
+
+
+def test_an_unknown_preset() -> None:
+    with pytest.raises(ScoreError, match="choose from default, thesis"):
+        preset_named("best")
