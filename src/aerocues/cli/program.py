@@ -9,7 +9,17 @@ from typing import Annotated, Any, cast
 
 import typer
 
-from aerocues.cli import datasets, importing, methods, results, run, status
+from aerocues.cli import (
+    compare,
+    datasets,
+    importing,
+    methods,
+    results,
+    run,
+    score,
+    status,
+    validate,
+)
 from aerocues.errors import AerocuesError
 
 BAD_INPUT = 2
@@ -30,6 +40,9 @@ app.command("run")(run.run)
 app.command("status")(status.status)
 app.command("results")(results.results)
 app.command("import")(importing.import_table)
+app.command("score")(score.score)
+app.command("validate")(validate.validate)
+app.command("compare")(compare.compare)
 app.add_typer(methods.app, name="methods")
 app.add_typer(datasets.app, name="datasets")
 
