@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,7 +18,9 @@ STANDARD_OUTPUT = "-"
 
 
 def results(
-    folder: Annotated[Path, typer.Argument(metavar="RESULTS", help="A results folder.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="RESULTS", help="A results folder or a packed one.")
+    ],
     sql: Annotated[
         str | None,
         typer.Option(metavar="QUERY", help="A query over the table 'results', not all its rows."),
@@ -29,7 +31,17 @@ def results(
     parquet: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write Parquet; - is standard output.")
     ] = None,
+    markdown: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a Markdown table, rounded.")
+    ] = None,
+    latex: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a LaTeX table, rounded.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    pack: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Pack all that the folder holds into one zip file."),
+    ] = None,
     top: Annotated[
         int, typer.Option(min=1, metavar="N", help="Combinations in the summary.")
     ] = TOP,
@@ -37,11 +49,17 @@ def results(
     """Print a summary, answer a query, or write the rows to a file."""
     import aerocues
 
-    targets = {"csv": csv, "parquet": parquet, "json": STANDARD_OUTPUT if as_json else None}
+    targets = {"csv": csv, "parquet": parquet, "markdown": markdown, "latex": latex}
+    targets["json"] = STANDARD_OUTPUT if as_json else None
     asked = {form: target for form, target in targets.items() if target is not None}
     if len(asked) > 1:
-        raise typer.BadParameter("choose one of --csv, --parquet and --json")
+        raise typer.BadParameter(f"choose one of {', '.join(f'--{form}' for form in targets)}")
+    if pack and (asked or sql is not None):
+        raise typer.BadParameter("--pack takes all that there is; leave the other options out")
     found = aerocues.Results(folder)
+    if pack:
+        _pack(found, pack)
+        return
     if not asked and sql is None:
         _print_summary(found, top)
         return
@@ -50,6 +68,16 @@ def results(
         _print_table(table)
     for form, target in asked.items():
         _write(table, target, form)
+
+
+def _pack(found: Results, target: Path) -> None:
+    from aerocues.cli.console import count
+
+    if str(target) == STANDARD_OUTPUT:
+        raise typer.BadParameter("a packed folder needs the name of a file, such as results.zip")
+    file = found.pack(target)
+    megabytes = f"{file.stat().st_size / 1e6:,.1f} MB"
+    sys.stderr.write(f"{count(len(found.table()), 'row')} packed into {file} ({megabytes})\n")
 
 
 def _write(table: pl.DataFrame, target: str, form: str) -> None:
@@ -86,11 +114,21 @@ def _print_summary(found: Results, top: int) -> None:
     if table.is_empty():
         console.print("there are no rows yet")
     print_ranking(table, top)
-    versions = settings.get("versions", {})
     combinations = table.select("detector", "descriptor", "norm", "matcher").n_unique()
     rows = f"{count(len(table), 'row')} of {count(combinations, 'combination')}"
-    made = f"preset {settings.get('preset')}, OpenCV {versions.get('opencv')}"
-    console.print(Text(f"\n{rows}; {made}\n{settings.get('machine', {}).get('name')}"))
+    console.print(Text(f"\n{rows}; {_origin(settings)}"))
+    if machine := settings.get("machine", {}).get("name"):
+        console.print(Text(machine))
+    if models := len(found.reconstructions()):
+        console.print(Text(f"{count(models, 'reconstruction')}, in the table reconstructions"))
     console.print(Text("\ncolumns", style="bold"))
     console.print(Text(", ".join(column.name for column in COLUMNS)))
     console.print("\nget them out with --csv FILE, --parquet FILE, --json or --sql QUERY")
+
+
+def _origin(settings: dict[str, Any]) -> str:
+    imported = settings.get("imported")
+    if imported:
+        return f"imported from {imported.get('file')}"
+    version = settings.get("versions", {}).get("opencv")
+    return f"preset {settings.get('preset')}, OpenCV {version}"

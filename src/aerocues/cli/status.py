@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,12 +17,15 @@ if TYPE_CHECKING:
 
 LONGEST_MESSAGE = 160
 LONGEST_LIST = 40
+EXAMPLES = 3
 # OpenCV puts its version and a path of the machine that built it before what it has to say.
 OPENCV_PREFIX = re.compile(r"OpenCV\([^)]*\) \S+: error: ")
 
 
 def status(
-    folder: Annotated[Path, typer.Argument(metavar="RESULTS", help="A results folder.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="RESULTS", help="A results folder or a packed one.")
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show what is done, left, failed and left out, with reasons."""
@@ -67,11 +72,35 @@ def _print_status(found: RunStatus, folder: Path) -> None:
             console.print(f"and {len(found.failures) - LONGEST_LIST} more; --json prints all")
     if found.exclusions:
         console.print(Text("\nleft out because of the images", style="bold"))
-        for exclusion in found.exclusions:
-            on = f"{exclusion['combination']} on {exclusion['pairs']:,} pairs"
-            console.print(Text(f"  {on}: {exclusion['reason']}"))
+        for line in _exclusions(found):
+            console.print(Text(f"  {line}"))
     if found.left:
-        console.print(Text(f"\nrun the same command again (-o {folder}) to measure what is left"))
+        first = "unzip it and " if folder.is_file() else ""
+        where = "FOLDER" if folder.is_file() else folder
+        told = f"{first}run the same command again (-o {where}) to measure what is left"
+        console.print(Text(f"\n{told}"))
+
+
+def _exclusions(found: RunStatus) -> Iterator[str]:
+    """A line for each reason and number of pairs."""
+    from aerocues.cli.console import count
+
+    combinations: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
+    for exclusion in found.exclusions:
+        key = (exclusion["reason"], exclusion["pairs"])
+        combinations[key].append(exclusion["combination"])
+    for (reason, pairs), names in combinations.items():
+        yield f"{_together(names)} on {count(pairs, 'pair')}: {reason}"
+
+
+def _together(names: Sequence[str]) -> str:
+    """Combinations in few words: by the detector and descriptor that they share, if any."""
+    if len(names) == 1:
+        return names[0]
+    methods = zip(*(name.split("-")[:2] for name in names), strict=True)
+    shared = "-".join(kinds[0] for kinds in methods if len(set(kinds)) == 1)
+    examples = ", ".join(names[:EXAMPLES]) + (", ..." if len(names) > EXAMPLES else "")
+    return f"{len(names):,} combinations " + (f"with {shared}" if shared else f"({examples})")
 
 
 def _failures(found: RunStatus) -> Table:

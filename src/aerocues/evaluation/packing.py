@@ -77,7 +77,7 @@ def unpack(file: Path) -> Path:
         If it is no such file, is damaged, has a member that would land elsewhere, or there is no
         room.
     """
-    folder = Path(tempfile.mkdtemp(prefix="aerocues-"))
+    folder = Path(tempfile.mkdtemp(prefix="aerocues-packed-"))
     try:
         _extract(file, folder)
     except BaseException:
