@@ -20,6 +20,9 @@ from aerocues.methods.detectors import DETECTORS
 from aerocues.methods.matchers import MATCHERS, NORMS
 from aerocues.methods.presets import PRESETS
 from aerocues.methods.registry import opencv_methods
+from aerocues.scoring.criteria import CRITERIA
+from aerocues.scoring.settings import PRESETS as SCORE_PRESETS
+from aerocues.scoring.weights import WEIGHT_METHODS
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -128,12 +131,43 @@ def provenance() -> Iterator[tuple[str, ...]]:
     return _columns(schema.PROVENANCE)
 
 
+def weight_methods() -> Iterator[tuple[str, ...]]:
+    """One row a method of weighting."""
+    yield "method", "weight of a criterion before the set is brought to the sum 1", "source"
+    for method in WEIGHT_METHODS.values():
+        yield f"`{method.name}`", method.description, method.source
+
+
+def score_presets() -> Iterator[tuple[str, ...]]:
+    """One row a preset of scoring."""
+    yield "preset", "what it is", "criteria", "weights", "failures"
+    for preset in SCORE_PRESETS.values():
+        names = ", ".join(f"`{name}`" for name in preset.criteria)
+        weights = ", ".join(f"`{name}`" for name in preset.settings.weights)
+        yield (
+            f"`{preset.name}`",
+            preset.description,
+            names,
+            weights,
+            f"`{preset.settings.failures}`",
+        )
+
+
+def criteria() -> Iterator[tuple[str, ...]]:
+    """One row a criterion."""
+    yield "criterion", "better", "what it is", "of"
+    for each in CRITERIA:
+        of = "the reconstruction" if each.reconstruction else "each pair"
+        yield f"`{each.name}`", each.better, each.description, of
+
+
 Table = Callable[[], Iterator[tuple[str, ...]]]
 TABLES: dict[str, tuple[Table, ...]] = {
     "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
     "metrics.md": (counts, metrics, ground_truth, times),
     "results.md": (names, provenance),
+    "scoring.md": (weight_methods, score_presets, criteria),
 }
 
 

@@ -15,7 +15,6 @@ from aerocues.cli.scoring import (
     CriteriaOption,
     FailuresOption,
     PresetOption,
-    ReconstructionOption,
 )
 
 if TYPE_CHECKING:
@@ -24,6 +23,9 @@ if TYPE_CHECKING:
 
     from aerocues.scoring.across import Entry, Machines
     from aerocues.scoring.comparison import Comparison
+
+
+LISTED = 6
 
 
 class Over(StrEnum):
@@ -41,7 +43,9 @@ def compare(
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
     alpha: AlphaOption = None,
-    reconstruction: ReconstructionOption = None,
+    reconstruction: Annotated[
+        bool, typer.Option("--reconstruction", help="Score the 3D models, too, in all results.")
+    ] = False,
     over: Annotated[
         Over, typer.Option(help="Combinations scored in both of two results, or in all.")
     ] = Over.PAIRWISE,
@@ -139,16 +143,19 @@ def _print_versatility(console: Console, comparison: Comparison, top: int) -> No
     frame = comparison.versatility()
     shown = frame.head(top)
     print_title(console, f"\nversatility: best {len(shown)} of {len(frame)} by mean CUES")
-    numbers = [str(number + 1) for number in range(len(comparison.names))]
+    # More do not fit; --csv and --json have them.
+    listed = comparison.names if len(comparison.names) <= LISTED else ()
+    numbers = [str(number + 1) for number in range(len(listed))]
     headings = ["mean", "min", "spread", "mean rank", "worst", *numbers]
     output = plain_table("combination", *headings, numbers=len(headings), gap=1)
+    output.columns[0].no_wrap = True
     for row in shown.iter_rows(named=True):
         output.add_row(
             row["alternative"],
             *(f"{row[name]:.3f}" for name in ("mean", "min", "spread")),
             f"{row['mean_rank']:.1f}",
             f"{row['worst_rank']:.0f}",
-            *("-" if row[name] is None else f"{row[name]:.3f}" for name in comparison.names),
+            *("-" if row[name] is None else f"{row[name]:.3f}" for name in listed),
         )
     print_table(console, output)
 

@@ -89,7 +89,7 @@ def _best(ranking: Ranking, top: int) -> Table:
     uneven = bool((frame["repeats"] < len(table.repeats)).any())
     headings += ["\npairs"] if uneven else []
     output = plain_table("\nrank", "\ncombination", *headings, numbers=len(headings), gap=1)
-    output.columns[0].justify = "right"
+    output.columns[0].justify, output.columns[1].no_wrap = "right", True
     for row in frame.iter_rows(named=True):
         output.add_row(
             f"{row['rank']}",

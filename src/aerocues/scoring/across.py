@@ -87,7 +87,7 @@ def entries_of(
     preset: str | None = None,
     *,
     criteria: Sequence[str] | None = None,
-    reconstruction: bool | None = None,
+    reconstruction: bool = False,
     **changes: object,
 ) -> list[Entry]:
     """Score every data set in some results, each machine by itself.
@@ -95,8 +95,10 @@ def entries_of(
     Parameters
     ----------
     results : sequence of Stored
-    preset, criteria, reconstruction
+    preset, criteria
         See `measured.table_of`.
+    reconstruction : bool
+        Whether to add the criteria of reconstruction, which all of the results then need.
     **changes
         Of the preset's settings; None changes nothing.
 
