@@ -131,3 +131,13 @@ def test_equal_scores_share_the_best_rank_and_stand_by_name() -> None:
 def test_ranks_along_the_last_axis() -> None:
     ranks = rank(np.array([[0.1, 0.5, NAN, 0.5 + 1e-15], [0.3, 0.2, 0.1, 0.0]]))
     np.testing.assert_array_equal(ranks, [[3, 1, NAN, 1], [1, 2, 3, 4]])
+
+
+@pytest.mark.parametrize("value", [0.1, 0.7, 12.3, 1e9])
+@pytest.mark.parametrize("costs", [[], [0]])
+def test_rounding_of_a_mean_leaves_nothing_of_the_worst(value: float, costs: list[int]) -> None:
+    # (0.1 + 0.1 + 0.1) / 3 is not 0.1, and the rest to the power 0.1 would be 0.02.
+    for repeats in (3, 7, 35):
+        values = np.repeat([[[value]], [[value + 0.5]]], repeats, axis=1)
+        scores = score(table_of(values, costs), ScoreSettings(alpha=0.1))
+        np.testing.assert_allclose(np.sort(scores.scores), [0, 1], rtol=0, atol=1e-12)

@@ -177,3 +177,10 @@ def test_order_of_criteria_has_no_influence_where_eigenvalues_are_equal(
 
 def test_pca_of_equal_eigenvalues_shares_alike() -> None:
     assert weigh((SIGNS[:, 1:4] + 1) / 2, "pca") == pytest.approx([1 / 3] * 3)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_critic_of_two_alternatives_is_no_noise(seed: int) -> None:
+    # Any two alternatives make all criteria agree or contradict each other fully.
+    matrix = np.random.default_rng(seed).uniform(size=(2, 4))
+    assert weigh(matrix, "critic") == pytest.approx([0.25] * 4)

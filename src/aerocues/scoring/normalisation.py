@@ -11,6 +11,7 @@ from aerocues.scoring.settings import Failures
 from aerocues.scoring.table import DecisionTable
 
 Array = NDArray[np.float64]
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,9 @@ def normalise(means: Means, table: DecisionTable, failures: Failures) -> Array:
     known = np.isfinite(width) & (width > 0)
     z = np.divide(offset, width, out=np.zeros_like(offset), where=known)
     z = np.where(table.is_cost, 1 - z, z).clip(0, 1)
+    # A power below 1 would blow up what rounding of a mean leaves of 0: 1e-16 ** 0.1 = 0.025.
+    largest = np.maximum(np.abs(means.low), np.abs(means.high))[:, None, :]
+    z[z * np.where(known, width, 1) < ROUNDING * np.where(known, largest, 0)] = 0
     z = np.where(known, z, 1)
     z[np.isnan(means.mean)] = np.nan
     if failures == "worst":

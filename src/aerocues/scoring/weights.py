@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-SAME = 1e-12
+SAME = 1e-9
+ROUNDING = 1e-12
 DEGENERATE = 1e-9
 
 
@@ -47,7 +48,8 @@ def _entropy(spread: Spread) -> Array:
     logarithm = np.log(share, where=share > 0, out=np.zeros_like(share))
     entropy = -np.einsum("bac,bac->bc", share, logarithm)
     most = np.log(np.maximum(spread.count, 2))
-    return np.asarray(np.where(total[:, 0] > 0, 1 - entropy / most, 0))
+    weight = np.where(total[:, 0] > 0, 1 - entropy / most, 0)
+    return np.asarray(np.where(weight > ROUNDING, weight, 0))
 
 
 def _variance(spread: Spread) -> Array:
@@ -55,12 +57,15 @@ def _variance(spread: Spread) -> Array:
 
 
 def _conflict(spread: Spread) -> Array:
-    """1 - abs(r) for each pair of criteria; a constant one conflicts with none."""
+    """1 - abs(r) for each pair of criteria; a constant one conflicts with none.
+
+    What rounding leaves of 0 would become a weight where all agree, as any two alternatives do.
+    """
     deviation = np.sqrt(spread.variance)
     product = deviation[:, :, None] * deviation[:, None, :]
     known = product > 0
     r = np.abs(spread.covariance) / np.where(known, product, 1)
-    return np.where(known, 1 - np.minimum(r, 1), 0)
+    return np.where(known & (r < 1 - ROUNDING), 1 - r, 0)
 
 
 def _critic(spread: Spread) -> Array:
