@@ -39,7 +39,7 @@ def test_a_measurement_from_python(tmp_path: Path) -> None:
     assert set(table["status"]) == {"ok"}
     assert set(table["seed"]) == {3}
     assert results.status().left == 0
-    best = aerocues.best_combinations(table)
+    best = aerocues.score(results).frame("combination")
     assert set(best["combination"]) == {"ORB-ORB-HAM-BF", "ORB-BRIEF-HAM-BF"}
     reopened = aerocues.Results(tmp_path / "results")
     assert reopened.sql("select count(*) as n from results")["n"].item() == 4

@@ -4,7 +4,7 @@
 
     dataset = aerocues.open_dataset("photos", max_width=1000)
     results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
-    print(results.table())
+    print(aerocues.score(results).frame("combination"))
 
 Everything here is loaded when it is first used, so that importing the package costs nothing.
 """
@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from aerocues.evaluation.importing import import_results
     from aerocues.evaluation.results import Results
     from aerocues.evaluation.run import Limits, Observer, run
-    from aerocues.evaluation.summary import best_combinations
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
+    from aerocues.scoring.measured import score
+    from aerocues.scoring.ranking import Ranking
 
     __version__: str
 
@@ -34,7 +35,8 @@ _MODULES = {
     "Observer": "evaluation.run",
     "Results": "evaluation.results",
     "import_results": "evaluation.importing",
-    "best_combinations": "evaluation.summary",
+    "score": "scoring.measured",
+    "Ranking": "scoring.ranking",
     "Combination": "methods.combination",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
@@ -51,12 +53,13 @@ __all__ = [
     "Limits",
     "Matches",
     "Observer",
+    "Ranking",
     "Results",
     "__version__",
-    "best_combinations",
     "import_results",
     "open_dataset",
     "run",
+    "score",
 ]
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import aerocues
 from tests.cli.conftest import COMBINATIONS, Call
 
 
@@ -18,10 +20,11 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     words = ("run", photos, "-o", output, "--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
     first = call(*words, "--limit", 2)
     assert first.code == 0
-    assert re.search(r"ORB-ORB-HAM-BF +[01]\.\d{3} +\d+ +\d+ +100 %", first.out)
+    assert re.search(r"1 ORB-ORB-HAM-BF +[01]\.\d{3} .* 100 % +[01]\.\d{3} +\d+ ", first.out)
     assert "photos: 1 combination on 2 pairs" in first.out
     assert re.search(r"rows +2: ok 2", first.out)
     assert f"aerocues status '{output}'" in first.out
+    assert f"aerocues score '{output}'" in first.out
     assert "2 rows to measure in 1 unit of work" in first.err
     assert "measured 2 rows" in first.err
 
@@ -34,7 +37,7 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert "on 3 pairs" in more.out
 
 
-def test_the_table_fits_100_columns_and_names_the_stages(
+def test_the_table_ranks_by_cues_and_fits_100_columns(
     call: Call, photos: Path, finished: Path
 ) -> None:
     words = ("run", photos, "-o", finished, "--combinations", COMBINATIONS, "--workers", 1)
@@ -43,10 +46,30 @@ def test_the_table_fits_100_columns_and_names_the_stages(
     table = answer.out.split("\n\n", maxsplit=1)[0].splitlines()
     assert table[0] == "photos: best 2 of 4 combinations on 3 pairs"
     assert max(map(len, table)) <= 100
-    assert table[2].split()[-4:] == ["detect", "describe", "match", "verify"]
-    ratios = [float(line.split()[1]) for line in table[3:5]]
-    assert ratios == sorted(ratios, reverse=True)
-    assert len(table) == 6
+    assert table[2].split()[-2:] == ["a", "pair"]
+    ranked = [line.split()[:3] for line in table[3:5]]
+    scores = {row["combination"]: row["score"] for row in _ranking(finished)}
+    assert [words[0] for words in ranked] == ["1", "2"]
+    assert {name: float(score) for _, name, score in ranked} == pytest.approx(
+        dict(list(scores.items())[:2]), abs=5e-4
+    )
+
+
+def _ranking(folder: Path) -> list[dict[str, Any]]:
+    return aerocues.score(aerocues.Results(folder)).frame("combination").to_dicts()
+
+
+def test_a_run_in_which_all_fails_says_why_there_is_no_ranking(call: Call, tmp_path: Path) -> None:
+    from PIL import Image
+
+    for name in ("a", "b"):
+        (tmp_path / "blank").mkdir(exist_ok=True)
+        Image.new("RGB", (160, 120), "gray").save(tmp_path / "blank" / f"{name}.png")
+    words = ("run", tmp_path / "blank", "-o", tmp_path / "results", "--workers", 1)
+    answer = call(*words, "--combinations", "ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-BF")
+    assert answer.code == 0
+    assert "no ranking: " in answer.out
+    assert "no_keypoints 2" in answer.out
 
 
 def test_a_dry_run_shows_the_plan_and_writes_nothing(

@@ -46,7 +46,7 @@ def test_a_table_becomes_a_results_folder(tmp_path: Path, suffix: str) -> None:
     assert rows["message"].to_list() == [None] * 3 + ["it failed where it was measured"]
     status = Results(tmp_path / "results").status()
     assert (status.planned, status.left, status.statuses) == (4, 0, {"ok": 3, "error": 1})
-    assert aerocues.best_combinations(rows)["pairs"].to_list() == [2, 2]
+    assert aerocues.score(results).frame()["repeats"].to_list() == [2, 2]
 
 
 def test_the_form_is_known_by_the_content(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from aerocues.errors import ScoreError
 from aerocues.scoring import PRESETS, criteria_named
 from aerocues.scoring.combinations import decision_table, suitable_preset
-from aerocues.scoring.measured import score_results, settings_from, table_of
+from aerocues.scoring.measured import score, settings_from, table_of
 from tests.scoring.measurements import Stored, models, row, rows
 
 ORB, SIFT, AKAZE = "ORB-ORB-HAM-BF", "SIFT-SIFT-L2-FLANN", "AKAZE-SIFT-L2-BF"
@@ -119,7 +119,7 @@ def test_reconstructions_join_where_most_have_one() -> None:
     assert not measured.table.failed[by_name[AKAZE]].any()
     # Only the pairs say how often a combination succeeds.
     assert measured.table.success_rate.tolist() == [1, 1, 1]
-    ranking = score_results(Stored(MEASURED, found), resamples=10)
+    ranking = score(Stored(MEASURED, found), resamples=10)
     assert ranking.unscored() == [AKAZE]
     assert ranking.frame("combination")["combination"].to_list() == [ORB, SIFT]
 
@@ -155,8 +155,8 @@ def test_failing_on_the_hard_pair_pays_by_the_thesis_and_costs_by_default() -> N
     steady = [row(ORB, 0, inliers=80), row(ORB, 1, inliers=30)]
     fragile = [row(SIFT, 0, inliers=80), row(SIFT, 1, status="no_model")]
     results = Stored(rows(*steady, *fragile))
-    by_thesis = score_results(results, "thesis", resamples=10).frame()
-    by_default = score_results(results, resamples=10).frame()
+    by_thesis = score(results, "thesis", resamples=10).frame()
+    by_default = score(results, resamples=10).frame()
     assert by_thesis["alternative"].to_list() == [SIFT, ORB]
     assert by_default["alternative"].to_list() == [ORB, SIFT]
     assert by_default["success_rate"].to_list() == [1.0, 0.5]

@@ -43,22 +43,26 @@ def import_table(
 
 
 def _print_folders(made: list[Results]) -> None:
-    from rich.text import Text
+    import polars as pl
 
-    from aerocues.cli.console import plain_table, print_table, standard_output
+    from aerocues.cli.console import aligned
 
-    console = standard_output()
-    with_figures = any(len(results.reconstructions()) for results in made)
-    headings = ["rows", "combinations", "pairs", *(["reconstructions"] if with_figures else [])]
-    output = plain_table("results folder", *headings, numbers=len(headings))
+    lines = []
     for results in made:
         table = results.table()
-        counts = [
-            len(table),
-            table.select("detector", "descriptor", "norm", "matcher").n_unique(),
-            table.select("image_1", "image_2").n_unique(),
-        ]
-        if with_figures:
-            counts.append(len(results.reconstructions()))
-        output.add_row(Text(str(results.folder)), *(f"{number:,}" for number in counts))
-    print_table(console, output)
+        lines.append(
+            {
+                "results folder": str(results.folder),
+                "rows": len(table),
+                "combinations": table.select(
+                    "detector", "descriptor", "norm", "matcher"
+                ).n_unique(),
+                "pairs": table.select("image_1", "image_2").n_unique(),
+                "reconstructions": len(results.reconstructions()),
+            }
+        )
+    folders = pl.DataFrame(lines)
+    if not folders["reconstructions"].sum():
+        folders = folders.drop("reconstructions")
+    for line in aligned(folders):
+        typer.echo(line)

@@ -56,7 +56,7 @@ def print_scores(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
     """Print the best `top`, the weights of the criteria and how both came about."""
     from rich.text import Text
 
-    print_best(ranking, measured.dataset, top)
+    print_best(ranking, measured, top)
     console = standard_output()
     console.print(Text("\nweights of the criteria", style="bold"))
     print_table(console, _weights(ranking))
@@ -64,7 +64,7 @@ def print_scores(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
     console.print(Text(f"\npreset {preset.name}: {preset.description}", style="dim"))
 
 
-def print_best(ranking: Ranking, title: str, top: int) -> None:
+def print_best(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
     """Print the best `top` and what may be said of them."""
     from rich.text import Text
 
@@ -72,20 +72,23 @@ def print_best(ranking: Ranking, title: str, top: int) -> None:
     number = len(ranking.scores.order)
     shown = f"best {top} of " if top < number else ""
     pairs = count(len(ranking.scores.table.repeats), "pair")
-    line = f"{title}: {shown}{count(number, 'combination')} on {pairs}"
+    line = f"{measured.dataset}: {shown}{count(number, 'combination')} on {pairs}"
     console.print(Text(line, style="bold"))
-    print_table(console, _best(ranking, top))
+    print_table(console, _best(ranking, measured, top))
     for note in _notes(ranking):
         console.print(Text(note, style="dim"))
 
 
-def _best(ranking: Ranking, top: int) -> Table:
+def _best(ranking: Ranking, measured: MeasuredTable, top: int) -> Table:
     table = ranking.scores.table
     frame = ranking.frame("combination").head(top)
-    shown = [name for name in HEADINGS if name in table.criterion_names][:SHOWN]
-    shown = shown or list(table.criterion_names[:SHOWN])
+    timed = any(name in measured.seconds for name in frame["combination"])
+    room = SHOWN - timed
+    shown = [name for name in HEADINGS if name in table.criterion_names][:room]
+    shown = shown or list(table.criterion_names[:room])
     headings = ["\nCUES", "95 %\ninterval", "95 %\nranks", "best\nin", "\nsuccess"]
     headings += [HEADINGS.get(name, f"\n{name}") for name in shown]
+    headings += ["seconds\na pair"] if timed else []
     uneven = bool((frame["repeats"] < len(table.repeats)).any())
     headings += ["\npairs"] if uneven else []
     output = plain_table("\nrank", "\ncombination", *headings, numbers=len(headings), gap=1)
@@ -100,6 +103,7 @@ def _best(ranking: Ranking, top: int) -> Table:
             f"{100 * row['probability_best']:.0f} %",
             f"{100 * row['success_rate']:.0f} %",
             *(_number(row[name]) for name in shown),
+            *([_number(measured.seconds.get(row["combination"]))] if timed else []),
             *([f"{row['repeats']:,}"] if uneven else []),
         )
     return output

@@ -106,14 +106,14 @@ def _print_summary(found: Results, top: int) -> None:
     from rich.text import Text
 
     from aerocues.cli.console import count, standard_output
-    from aerocues.cli.ranking import print_ranking
+    from aerocues.cli.medians_table import print_medians
     from aerocues.evaluation.schema import COLUMNS
 
     table, settings = found.table(), found.settings
     console = standard_output()
     if table.is_empty():
         console.print("there are no rows yet")
-    print_ranking(table, top)
+    print_medians(table, top)
     combinations = table.select("detector", "descriptor", "norm", "matcher").n_unique()
     rows = f"{count(len(table), 'row')} of {count(combinations, 'combination')}"
     console.print(Text(f"\n{rows}; {_origin(settings)}"))

@@ -169,10 +169,10 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     import polars as pl
 
     from aerocues.cli.console import standard_output
-    from aerocues.cli.ranking import print_ranking
 
     table = results.table().filter(pl.col("dataset") == dataset)
-    print_ranking(table, top)
+    if len(table):
+        _print_ranking(results, dataset, top)
     console = standard_output()
     counts = table["status"].value_counts(sort=True).iter_rows()
     by_status = ", ".join(f"{status} {number:,}" for status, number in counts) or "none"
@@ -181,6 +181,22 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
         f"\nrows     {len(table):,}: {by_status}",
         f"results  {results.folder}",
         f"next     aerocues status {folder}",
+        f"         aerocues score {folder}",
         f"         aerocues results {folder} --csv rows.csv",
     ):
         console.print(line, soft_wrap=True, markup=False)
+
+
+def _print_ranking(results: Results, dataset: str, top: int) -> None:
+    from aerocues.cli.console import standard_output
+    from aerocues.cli.ranking_table import print_best
+    from aerocues.errors import ScoreError
+    from aerocues.scoring.measured import table_of
+    from aerocues.scoring.ranking import rank_alternatives
+
+    try:
+        measured = table_of(results, dataset=dataset)
+        print_best(rank_alternatives(measured.table, measured.preset.settings), measured, top)
+    except ScoreError as error:
+        # The rows are there and of use, if only to see why none can be ranked.
+        standard_output().print(f"no ranking: {error}", soft_wrap=True, markup=False)

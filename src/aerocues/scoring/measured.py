@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.bootstrap import RESAMPLES
-from aerocues.scoring.combinations import METHODS, decision_table, has_chance_test, suitable_preset
+from aerocues.scoring.combinations import (
+    COMBINATION,
+    METHODS,
+    decision_table,
+    has_chance_test,
+    suitable_preset,
+)
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.ranking import TOP, Interval, Ranking, rank_alternatives
 from aerocues.scoring.settings import ScorePreset, ScoreSettings, preset_named
@@ -35,11 +41,22 @@ class Measured(Protocol):
 
 @dataclass(frozen=True)
 class MeasuredTable:
-    """The decision table of one dataset, and the preset that it was made by."""
+    """The measurements of one dataset, ready to be scored.
+
+    Attributes
+    ----------
+    dataset : str
+    table : DecisionTable
+    preset : ScorePreset
+        What its criteria were chosen by.
+    seconds : mapping of str to float
+        Median time of each combination for an image and a pair, where it is known.
+    """
 
     dataset: str
     table: DecisionTable
     preset: ScorePreset
+    seconds: Mapping[str, float]
 
 
 def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
@@ -113,7 +130,15 @@ def table_of(
     if not has_chance_test(rows):
         _refuse_chance(listed)
     table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
-    return MeasuredTable(rows["dataset"][0], table, chosen)
+    return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows))
+
+
+def _median_seconds(rows: pl.DataFrame) -> dict[str, float]:
+    import polars as pl
+
+    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    medians = rows.group_by(name).agg(pl.col("total_seconds").median()).drop_nulls()
+    return dict(medians.iter_rows())
 
 
 def _refuse_chance(criteria: Sequence[Criterion]) -> None:
@@ -125,7 +150,7 @@ def _refuse_chance(criteria: Sequence[Criterion]) -> None:
         )
 
 
-def score_results(
+def score(
     results: Measured,
     preset: str | None = None,
     *,

@@ -1,4 +1,4 @@
-"""The ranking by median inlier ratio, on tables worked out by hand."""
+"""Medians of each combination, on tables worked out by hand."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 import polars as pl
 import pytest
 
+from aerocues.evaluation.medians import combination_medians
 from aerocues.evaluation.schema import empty_row, polars_schema
-from aerocues.evaluation.summary import best_combinations
 
 
 def row(combination: str, pair: int, status: str = "ok", **values: Any) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def test_medians_count_pairs_without_success_as_zero() -> None:
         row("KAZE-KAZE-L2-BF", 1, "crashed"),
         row("KAZE-KAZE-L2-BF", 2, "timeout"),
     )
-    best = best_combinations(rows)
+    best = combination_medians(rows)
     assert best["combination"].to_list() == ["SIFT-SIFT-L2-BF", "ORB-ORB-HAM-BF", "KAZE-KAZE-L2-BF"]
     assert best["precision"].to_list() == [0.8, 0.7, 0.0]
     assert best["matches"].to_list() == [50, 100, 0]
@@ -55,7 +55,7 @@ def test_pairs_are_counted_by_their_images() -> None:
         row("ORB-ORB-HAM-BF", 0, **other),  # the first pair of another run
         row("ORB-ORB-HAM-BF", 7, **other),  # the same under another number
     )
-    assert best_combinations(rows)["pairs"].to_list() == [2]
+    assert combination_medians(rows)["pairs"].to_list() == [2]
 
 
 def test_times_are_medians_where_they_were_measured() -> None:
@@ -75,7 +75,7 @@ def test_times_are_medians_where_they_were_measured() -> None:
         row("ORB-ORB-HAM-BF", 1, **times(2, 6, 20)),
         row("ORB-ORB-HAM-BF", 2, "crashed"),
     )
-    best = best_combinations(rows).row(0, named=True)
+    best = combination_medians(rows).row(0, named=True)
     assert best["detect_seconds"] == 3  # of 2 and 4
     assert best["describe_seconds"] == 6
     assert best["match_seconds"] == 15
@@ -90,10 +90,10 @@ def test_ties_are_broken_by_inliers_then_matches_then_name() -> None:
         row("C-C-HAM-BF", 0, **counted(0.5, 20, 10)),
         row("D-D-HAM-BF", 0, **counted(0.5, 21, 10)),
     )
-    names = best_combinations(rows)["combination"].to_list()
+    names = combination_medians(rows)["combination"].to_list()
     assert [name[0] for name in names] == ["D", "C", "A", "B"]
-    assert len(best_combinations(rows, top=2)) == 2
+    assert len(combination_medians(rows, top=2)) == 2
 
 
 def test_an_empty_table_ranks_nothing() -> None:
-    assert len(best_combinations(table())) == 0
+    assert len(combination_medians(table())) == 0

@@ -1,4 +1,4 @@
-"""The best combinations, as a table that fits 100 columns."""
+"""Medians of each combination, as a table that fits 100 columns."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ NARROW = 96
 STAGES = ("detect", "describe", "match", "verify")
 
 
-def print_ranking(table: pl.DataFrame, top: int) -> None:
-    """Print the best `top` combinations of each dataset in a table of results."""
+def print_medians(table: pl.DataFrame, top: int) -> None:
+    """Print the `top` with the highest inlier ratio, of each dataset in a table of results."""
     for (dataset,), rows in table.group_by("dataset", maintain_order=True):
         _print_dataset(str(dataset), rows, top)
 
@@ -26,9 +26,9 @@ def _seconds(value: float | None) -> str:
 def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
     from rich.text import Text
 
-    from aerocues.evaluation.summary import PAIR, best_combinations
+    from aerocues.evaluation.medians import PAIR, combination_medians
 
-    ranked = best_combinations(rows)
+    ranked = combination_medians(rows)
     best = ranked.head(top)
     uneven = ranked["pairs"].min() != ranked["pairs"].max()
     console = standard_output()

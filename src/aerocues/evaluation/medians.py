@@ -1,4 +1,4 @@
-"""The best combinations of a table of results, until there is a score."""
+"""Medians of each combination over its pairs: what it finds, and where its time goes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ PAIR = ("dataset", "image_1", "image_2")
 METHODS = ("detector", "descriptor", "norm", "matcher")
 
 
-def best_combinations(table: pl.DataFrame, top: int | None = None) -> pl.DataFrame:
-    """Rank combinations by their median inlier ratio over all pairs.
+def combination_medians(table: pl.DataFrame, top: int | None = None) -> pl.DataFrame:
+    """Medians of each combination over all pairs, the highest inlier ratio first.
 
     Parameters
     ----------

@@ -1,0 +1,192 @@
+"""`aerocues score`, `validate` and `compare` on a finished run."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import aerocues
+from tests.cli.conftest import Call
+
+CRITERIA = "precision,inliers,total_seconds"
+
+
+@pytest.fixture
+def elsewhere(finished: Path, tmp_path: Path) -> Path:
+    """The same results under another name, as if measured on a slower machine."""
+    from tests.cli.other_machine import slower_copy
+
+    return slower_copy(finished, tmp_path / "elsewhere")
+
+
+def test_a_ranking_is_a_table_with_intervals_and_weights(call: Call, finished: Path) -> None:
+    answer = call("score", finished, "--resamples", 50)
+    assert answer.code == 0
+    lines = answer.out.splitlines()
+    assert lines[0].endswith("4 combinations on 3 pairs")
+    assert max(map(len, lines)) <= 100
+    ranked = [line.split() for line in lines[3:7]]
+    assert [words[0] for words in ranked] == ["1", "2", "3", "4"]
+    scores = [float(words[2]) for words in ranked]
+    assert scores == sorted(scores, reverse=True)
+    assert "weights of the criteria" in answer.out
+    assert "preset default" in answer.out
+
+
+def test_json_has_ranking_weights_and_settings(call: Call, finished: Path) -> None:
+    facts = json.loads(call("score", finished, "--json", "--seed", 3, "--resamples", 60).out)
+    ranking = facts["ranking"]
+    assert len(ranking) == 4
+    wanted = {"combination", "score", "score_low", "score_high", "rank", "rank_low", "rank_high"}
+    wanted |= {"probability_best", "success_rate", "precision_beyond_chance", "matches"}
+    for row in ranking:
+        assert wanted <= row.keys()
+        assert row["rank_low"] <= row["rank_high"]
+    assert sum(row["probability_best"] for row in ranking) == pytest.approx(1, abs=0.1)
+    for method in ("entropy", "variance", "critic", "pca", "aggregate"):
+        assert sum(row[method] for row in facts["weights"].values()) == pytest.approx(1)
+    assert facts["settings"]["preset"] == "default"
+    assert (facts["settings"]["seed"], facts["settings"]["resamples"]) == (3, 60)
+
+
+def test_python_gives_the_same_ranking(call: Call, finished: Path) -> None:
+    facts = json.loads(call("score", finished, "--json", "--resamples", 40, "--seed", 5).out)
+    ranking = aerocues.score(aerocues.Results(finished), resamples=40, seed=5)
+    assert ranking.frame("combination").to_dicts() == facts["ranking"]
+
+
+def test_choices_change_what_is_scored(call: Call, finished: Path) -> None:
+    options = ["--criteria", CRITERIA, "--weights", "entropy", "--aggregation", "trimmed"]
+    options += ["--alpha", "0.25", "--failures", "omit", "--interval", "pairwise"]
+    options += ["--test", "wilcoxon", "--preset", "thesis", "--resamples", "20"]
+    settings = json.loads(call("score", finished, *options, "--json").out)["settings"]
+    assert settings["criteria"] == CRITERIA.split(",")
+    assert settings["weights"] == ["entropy"]
+    assert (settings["alpha"], settings["aggregation"]) == (0.25, "trimmed")
+    assert (settings["failures"], settings["preset"]) == ("omit", "thesis")
+    assert (settings["interval"], settings["test"]) == ("pairwise", "wilcoxon")
+
+
+def test_rankings_go_to_files(call: Call, finished: Path, tmp_path: Path) -> None:
+    files = {form: tmp_path / f"ranking.{form}" for form in ("csv", "latex", "markdown")}
+    options = [word for form, file in files.items() for word in (f"--{form}", file)]
+    answer = call("score", finished, *options, "--top", 2, "--resamples", 20)
+    assert answer.code == 0
+    assert len(pl.read_csv(files["csv"])) == 4
+    latex = files["latex"].read_text()
+    assert latex.count(r"\\") == 3  # the head and two rows
+    assert r"\toprule" in latex
+    assert len(files["markdown"].read_text().strip().splitlines()) == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--criteria", "beauty"], "no criterion 'beauty'"),
+        (["--criteria", ""], "no criterion was chosen"),
+        (["--criteria", "inliers,inliers"], "named twice"),
+        (["--preset", "best"], "no preset of scoring 'best'"),
+        (["--weights", "mine"], "no method of weighting 'mine'"),
+        (["--aggregation", "sum"], "no aggregation 'sum'"),
+        (["--alpha", "0"], "alpha is 0"),
+        (["--dataset", "mars"], "no dataset 'mars'"),
+        (["--resamples", "1"], "--resamples"),
+        (["--reconstruction"], "no reconstructions"),
+        (["--criteria", "inliers,gt_repeatability"], "no value at all for gt_repeatability"),
+    ],
+)
+def test_wrong_choices_are_told_in_one_line(
+    call: Call, finished: Path, options: list[str], told: str
+) -> None:
+    answer = call("score", finished, *options)
+    assert answer.code == 2
+    assert answer.err.startswith("error: ")
+    assert told in answer.err
+    assert answer.err.count("\n") == 1
+
+
+def test_validation_has_all_its_sections(call: Call, finished: Path) -> None:
+    answer = call("validate", finished)
+    assert answer.code == 0
+    for title in (
+        "power alpha",
+        "aggregation of the weights",
+        "criteria left out",
+        "other methods",
+        "criteria: Pearson",
+        "detectors by mean CUES",
+        "descriptors by mean CUES",
+        "norms by mean CUES",
+        "matchers by mean CUES",
+        "Pareto front of",
+        "rank reversal",
+        "mean ranks of the best",
+    ):
+        assert title in answer.out
+    assert max(map(len, answer.out.splitlines())) <= 100
+
+
+def test_validation_as_json(call: Call, finished: Path) -> None:
+    options = ["--criteria", CRITERIA, "--speed", "total_seconds", "--quality", "inliers"]
+    facts = json.loads(call("validate", finished, *options, "--json").out)
+    assert facts["alpha"]["names"] == ["0.1", "0.25", "0.5", "0.75"]
+    assert facts["aggregation"]["correlation"][0][0] == pytest.approx(1)
+    assert facts["criterion_left_out"]["names"][1:] == [
+        f"without {name}" for name in CRITERIA.split(",")
+    ]
+    assert facts["agreement"]["names"][0] == "CUES"
+    assert facts["criteria_correlation"]["names"] == CRITERIA.split(",")
+    assert {row["name"] for row in facts["hierarchies"]["detectors"]} == {"ORB", "AKAZE", "GFTT"}
+    assert facts["pareto"]["criteria"] == ["total_seconds", "inliers"]
+    assert facts["pareto"]["front"]
+    assert facts["rank_reversal"]["rounds"] == 100
+    assert len(facts["critical_difference"]["mean_ranks"]) == 4
+
+
+def test_an_axis_that_is_no_criterion_is_told(call: Call, finished: Path) -> None:
+    answer = call("validate", finished, "--speed", "beauty")
+    assert answer.code == 2
+    assert "no criterion 'beauty' here" in answer.err
+
+
+def test_machines_are_compared_by_their_times(call: Call, finished: Path, elsewhere: Path) -> None:
+    answer = call("compare", finished, elsewhere)
+    assert answer.code == 0
+    assert max(map(len, answer.out.splitlines())) <= 100
+    assert "versatility: best 4 of 4" in answer.out
+    assert "slow board against" in answer.out
+    facts = json.loads(call("compare", finished, elsewhere, "--json").out)
+    (machines,) = facts["machines"]
+    by_stage = {row["stage"]: row for row in machines["times"]}
+    assert by_stage["match"]["ratio"] == pytest.approx(3)
+    assert facts["shared"] == [[4, 4], [4, 4]]
+    assert len(facts["versatility"]) == 4
+
+
+def test_scores_of_all_results_go_to_a_file(
+    call: Call, finished: Path, elsewhere: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "scores.csv"
+    assert call("compare", finished, elsewhere, "--csv", file, "--over", "all").code == 0
+    assert pl.read_csv(file)["combination"].n_unique() == 4
+
+
+def test_one_result_cannot_be_compared(call: Call, finished: Path) -> None:
+    answer = call("compare", finished)
+    assert answer.code == 2
+    assert "two results or more" in answer.err
+
+
+def test_results_without_a_row_cannot_be_scored(call: Call, finished: Path, tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    shutil.copytree(finished, empty)
+    for part in (empty / "parts").glob("*.parquet"):
+        part.unlink()
+    for command in ("score", "validate"):
+        answer = call(command, empty)
+        assert answer.code == 2
+        assert "no measured rows" in answer.err
