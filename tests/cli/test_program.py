@@ -10,7 +10,7 @@ import pytest
 import aerocues
 from tests.cli.conftest import Call
 
-COMMANDS = ("run", "status", "results", "methods", "datasets")
+COMMANDS = ("run", "status", "results", "import", "methods", "datasets")
 
 
 def test_help_lists_the_commands_and_is_the_default(call: Call) -> None:

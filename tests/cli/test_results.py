@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -126,3 +127,52 @@ def test_pairs_are_counted_by_their_images(call: Call, photos: Path, tmp_path: P
         answer = call("run", photos, *words, "--pairs", file)
         assert answer.code == 0, answer.err
     assert "1 combination on 2 pairs" in call("results", tmp_path / "results").out
+
+
+def test_a_query_is_typeset(call: Call, finished: Path, tmp_path: Path) -> None:
+    query = "select 'GFTT_H' as detector, count(*) as n, avg(precision) / 1000 as x from results"
+    answer = call("results", finished, "--sql", query, "--markdown", "-")
+    assert answer.out.splitlines()[:2] == ["| detector | n | x |", "| --- | ---: | ---: |"]
+    file = tmp_path / "table.tex"
+    assert call("results", finished, "--sql", query, "--latex", file).code == 0
+    assert r"GFTT\_H & 12 & " in file.read_text()
+
+
+def test_a_folder_is_packed_and_read_where_it_is(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "packed.zip"
+    answer = call("results", finished, "--pack", file)
+    assert (answer.code, answer.out) == (0, "")
+    assert re.fullmatch(rf"12 rows packed into {file} \(.* MB\)\n", answer.err)
+    assert call("results", file, "--csv", "-") == call("results", finished, "--csv", "-")
+    assert call("status", file) == call("status", finished)
+    assert call("results", file).out == call("results", finished).out
+
+
+def test_what_cannot_be_packed_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
+    for words, told in (
+        (("--pack", tmp_path / "p.zip", "--csv", "-"), "leave the other options out"),
+        (("--pack", "-"), "needs the name of a file"),
+        (("--pack", tmp_path), "it is a folder"),
+    ):
+        answer = call("results", finished, *words)
+        assert answer.code == 2
+        assert re.fullmatch(rf"error: .*{told}.*\n", answer.err)
+    (tmp_path / "rows.csv").write_text("a,b\n1,2\n")
+    for command in ("results", "status"):
+        answer = call(command, tmp_path / "rows.csv")
+        assert answer.code == 2
+        assert re.fullmatch(r"error: .*no results folder and no packed one.*import'\n", answer.err)
+    assert [path.name for path in tmp_path.iterdir()] == ["rows.csv"]
+
+
+def test_of_a_folder_of_results_one_is_to_be_named(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    for name in ("one", "two"):
+        shutil.copytree(finished, tmp_path / name)
+    for command in ("results", "status"):
+        answer = call(command, tmp_path)
+        assert answer.code == 2
+        assert re.fullmatch(r"error: .*folder of results folders.*: one, two\n", answer.err)

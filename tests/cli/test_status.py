@@ -48,6 +48,44 @@ def test_what_is_left_and_left_out_is_told(call: Call, finished: Path, tmp_path:
     assert "run the same command again" in answer.out
 
 
+def test_what_was_left_out_for_one_reason_takes_one_line(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "gray"
+    shutil.copytree(finished, folder)
+    run = json.loads((folder / "run.json").read_text())
+    left_out = [
+        (f"{detector}-LUCID-HAM-{matcher}", "gray", pairs)
+        for detector in ("ORB", "SIFT")
+        for matcher in ("BF", "FLANN")
+        for pairs in (5, 1)
+    ]
+    mixed = ["ORB-SIFT-L2-BF", "SIFT-ORB-HAM-BF", "KAZE-KAZE-L2-BF", "MSD-VGG-L2-BF"]
+    left_out += [(name, "odd", 2) for name in mixed]
+    run["exclusions"] = [
+        {"combination": name, "reason": reason, "pairs": pairs} for name, reason, pairs in left_out
+    ]
+    (folder / "run.json").write_text(json.dumps(run))
+    lines = call("status", folder).out.partition("left out because of the images\n")[2]
+    assert lines.splitlines() == [
+        "  4 combinations with LUCID on 5 pairs: gray",
+        "  4 combinations with LUCID on 1 pair: gray",
+        "  4 combinations (ORB-SIFT-L2-BF, SIFT-ORB-HAM-BF, KAZE-KAZE-L2-BF, ...) on 2 pairs: odd",
+    ]
+    facts = json.loads(call("status", folder, "--json").out)
+    assert facts["exclusions"] == run["exclusions"]
+
+
+def test_what_is_left_of_a_packed_folder_needs_the_folder(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "half"
+    shutil.copytree(finished, folder)
+    min((folder / "parts").glob("*.parquet")).unlink()
+    Results(folder).pack(tmp_path / "half.zip")
+    assert "unzip it and run the same command again" in call("status", tmp_path / "half.zip").out
+
+
 def test_a_folder_without_results_is_refused(call: Call, tmp_path: Path) -> None:
     for folder in (tmp_path, tmp_path / "missing"):
         answer = call("status", folder)
