@@ -45,7 +45,11 @@ def validate(
     top: Annotated[int, typer.Option(min=2, metavar="N", help="Length of lists.")] = 10,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Tell how far the ranking depends on choices, and what other methods would say."""
+    """Tell how far the ranking can be trusted.
+
+    How it changes with each choice, what other methods make of the same values, and what stands
+    behind it.
+    """
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.scoring import table_and_settings
