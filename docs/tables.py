@@ -161,12 +161,17 @@ def criteria() -> Iterator[tuple[str, ...]]:
         yield f"`{each.name}`", each.better, each.description, of
 
 
+def reconstructions() -> Iterator[tuple[str, ...]]:
+    """Columns of the figures of reconstructions."""
+    return _columns(schema.RECONSTRUCTIONS)
+
+
 Table = Callable[[], Iterator[tuple[str, ...]]]
 TABLES: dict[str, tuple[Table, ...]] = {
     "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
     "metrics.md": (counts, metrics, ground_truth, times),
-    "results.md": (names, provenance),
+    "results.md": (names, provenance, reconstructions),
     "scoring.md": (weight_methods, score_presets, criteria),
 }
 
