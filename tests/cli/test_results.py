@@ -144,7 +144,7 @@ def test_a_folder_is_packed_and_read_where_it_is(
     file = tmp_path / "packed.zip"
     answer = call("results", finished, "--pack", file)
     assert (answer.code, answer.out) == (0, "")
-    assert re.fullmatch(rf"12 rows packed into {file} \(.* MB\)\n", answer.err)
+    assert re.fullmatch(rf"12 rows packed into {file} \(.* kB\)\n", answer.err)
     assert call("results", file, "--csv", "-") == call("results", finished, "--csv", "-")
     assert call("status", file) == call("status", finished)
     assert call("results", file).out == call("results", finished).out

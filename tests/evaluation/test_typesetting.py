@@ -41,7 +41,7 @@ def test_latex(tmp_path: Path) -> None:
         r"combination & score\_low & inliers & seconds \\",
         r"\midrule",
         r"GFTT\_H-SIFT-L2-BF & 0.8821 & 123456 & $-1.500 \times 10^{-7}$ \\",
-        r"50 \% \& \#1 | \{\$x\textasciicircum{}2\textasciitilde{}\textbackslash{}\} more"
+        r"50 \% \& \#1 \textbar{} \{\$x\textasciicircum{}2\textasciitilde{}\textbackslash{}\} more"
         r" & -- & $-7$ & 12346 \\",
         r"\bottomrule",
         r"\end{tabular}",

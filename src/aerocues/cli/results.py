@@ -76,8 +76,8 @@ def _pack(found: Results, target: Path) -> None:
     if str(target) == STANDARD_OUTPUT:
         raise typer.BadParameter("a packed folder needs the name of a file, such as results.zip")
     file = found.pack(target)
-    megabytes = f"{file.stat().st_size / 1e6:,.1f} MB"
-    sys.stderr.write(f"{count(len(found.table()), 'row')} packed into {file} ({megabytes})\n")
+    size = f"{file.stat().st_size / 1e3:,.0f} kB"
+    sys.stderr.write(f"{count(len(found.table()), 'row')} packed into {file} ({size})\n")
 
 
 def _write(table: pl.DataFrame, target: str, form: str) -> None:
