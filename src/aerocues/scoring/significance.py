@@ -126,6 +126,13 @@ def compare_with_best(
     ------
     ScoreError
         If there is no such test.
+
+    Notes
+    -----
+    The best is chosen by the same repeats. The truly best is told from it no more often than the
+    level says, but of many that are equal, the luckiest may well be told from the unluckiest. And
+    where only two alternatives are scored by several criteria, their weights follow their
+    differences, so that small p-values are too frequent.
     """
     if test not in TESTS:
         raise ScoreError(f"there is no test {test!r}; choose from {', '.join(TESTS)}")
