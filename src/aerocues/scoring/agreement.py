@@ -1,12 +1,13 @@
 """How other methods of multi-criteria decision making rank the same alternatives.
 
-Their implementations are those of pymcdm, independent of the ones here. All get the normalised
-criteria before the power alpha and the weights of the score.
+All but COPRAS are those of pymcdm, independent of the score. They get the normalised criteria
+before the power alpha and the weights of the score.
 """
 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,16 @@ from aerocues.scoring.correlation import rank_correlation
 from aerocues.scoring.cues import Scores
 
 Array = NDArray[np.float64]
+LEAST_COST = 1e-9
+
+
+def _copras(matrix: Array, weights: Array, types: NDArray[np.int64]) -> Array:
+    """COPRAS (Zavadskas and Kaklauskas 1996); that of pymcdm adds the costs to the benefits."""
+    weighted = weights * matrix / matrix.sum(axis=0)
+    benefit, cost = weighted[:, types > 0].sum(axis=1), weighted[:, types < 0].sum(axis=1)
+    # An alternative without any cost gets the whole of what the costs are worth.
+    inverse = 1 / np.maximum(cost, LEAST_COST)
+    return np.asarray(benefit + cost.sum() * inverse / inverse.sum())
 
 
 @dataclass(frozen=True)
@@ -27,8 +38,8 @@ class RankingMethod:
     Attributes
     ----------
     name : str
-    kind : str
-        Its class in pymcdm.
+    kind : str or callable
+        Its class in pymcdm, or a function of matrix, weights and types (-1 for costs).
     arguments : tuple
         Of that class.
     higher_is_better : bool
@@ -38,7 +49,7 @@ class RankingMethod:
     """
 
     name: str
-    kind: str
+    kind: str | Callable[[Array, Array, NDArray[np.int64]], Array]
     arguments: tuple[Any, ...] = ()
     higher_is_better: bool = True
     needs_costs: bool = False
@@ -48,7 +59,7 @@ RANKING_METHODS: tuple[RankingMethod, ...] = (
     RankingMethod("TOPSIS", "TOPSIS"),
     RankingMethod("VIKOR", "VIKOR", higher_is_better=False),
     RankingMethod("PROMETHEE II", "PROMETHEE_II", ("usual",)),
-    RankingMethod("COPRAS", "COPRAS", needs_costs=True),
+    RankingMethod("COPRAS", _copras, needs_costs=True),
     RankingMethod("MOORA", "MOORA", needs_costs=True),
 )
 
@@ -108,7 +119,8 @@ def _preferences(
         return np.full(len(matrix), np.nan)
     costs = is_cost & method.needs_costs
     values = np.where(costs, 1 - matrix, matrix)
-    ranking = getattr(methods, method.kind)(*method.arguments)
+    kind = method.kind
+    ranking = getattr(methods, kind)(*method.arguments) if isinstance(kind, str) else kind
     with np.errstate(divide="ignore", invalid="ignore"), warnings.catch_warnings():
         # PROMETHEE warns of alternatives that are better or worse than all others in everything.
         warnings.filterwarnings("ignore", "Alternatives with indices", UserWarning)
