@@ -42,6 +42,7 @@ def start(images: Path, results: Path) -> subprocess.Popen[bytes]:
             **os.environ,
             "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
             "AEROCUES_TEST_RUN": str(images),
+            "TMPDIR": str(results.parent),
         },
         stderr=subprocess.PIPE,
     )
@@ -75,6 +76,7 @@ def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path
         process.send_signal(signal.SIGKILL)
         process.wait()
         wait_until(lambda: not workers_of(str(images)), 20)
+        assert not list(tmp_path.glob("aerocues-worker-*"))
         before = parts_of(results)
         assert before >= enough
         rows = len(Results(results).table())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -114,10 +114,19 @@ def _context(dataset: Dataset, preset: str, seed: int, timing: Timing) -> Contex
     )
 
 
-def _patterns(combinations: str | Iterable[str | Combination] | None) -> str | list[str] | None:
+def _select(
+    context: Context,
+    combinations: str | Iterable[str | Combination] | None,
+    kept: Mapping[str, str | Iterable[str] | None],
+    *,
+    everything: bool,
+) -> list[Combination]:
+    patterns: str | list[str] | None
     if combinations is None or isinstance(combinations, str):
-        return combinations
-    return [str(combination) for combination in combinations]
+        patterns = combinations
+    else:
+        patterns = [str(combination) for combination in combinations]
+    return select(context.methods, patterns, **kept, everything=everything)
 
 
 def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) -> dict[str, object]:
@@ -202,13 +211,8 @@ def run(
     observer = observer or Observer()
     engine = engine or local_engine(limits or Limits(), timing)
     context = _context(dataset, preset, seed, timing)
-    chosen = select(
-        context.methods,
-        _patterns(combinations),
-        detectors=detectors,
-        descriptors=descriptors,
-        everything=everything,
-    )
+    kept = {"detectors": detectors, "descriptors": descriptors}
+    chosen = _select(context, combinations, kept, everything=everything)
     store = Store.create(Path(output))
     with store.writing():
         present = store.present(timing, retry_failed=retry_failed)
@@ -237,13 +241,8 @@ def plan_run(
 ) -> Plan:
     """What `run` would do with the same arguments; nothing is measured or written."""
     context = _context(dataset, preset, seed, timing)
-    chosen = select(
-        context.methods,
-        _patterns(combinations),
-        detectors=detectors,
-        descriptors=descriptors,
-        everything=everything,
-    )
+    kept = {"detectors": detectors, "descriptors": descriptors}
+    chosen = _select(context, combinations, kept, everything=everything)
     present: frozenset[str] = frozenset()
     if (Path(output) / RUN).is_file():
         present = Store.open(Path(output)).present(timing, retry_failed=retry_failed)

@@ -7,6 +7,7 @@ rather than forked, so that callers need no ``__main__`` guard and threads of th
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -27,10 +28,11 @@ def _limit_memory(megabytes: int) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
 
 
-def _end_with_parent(parent: int) -> None:
+def _end_with_parent(parent: int, folder: Path) -> None:
     """End this process soon after its parent, however that ended: nobody waits for the rows."""
     while os.getppid() == parent:
         time.sleep(PARENT_CHECK_SECONDS)
+    shutil.rmtree(folder, ignore_errors=True)  # else the parent would have done it
     os._exit(1)
 
 
@@ -66,9 +68,15 @@ def main() -> None:
     if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {int(core)})
     _limit_memory(int(megabytes))
-    threading.Thread(target=_end_with_parent, args=[int(parent)], daemon=True).start()
-    with Connection(int(descriptor)) as pipe:
-        serve(pipe, Path(page))
+    watch = threading.Thread(
+        target=_end_with_parent, args=[int(parent), Path(page).parent], daemon=True
+    )
+    watch.start()
+    try:
+        with Connection(int(descriptor)) as pipe:
+            serve(pipe, Path(page))
+    finally:
+        shutil.rmtree(Path(page).parent, ignore_errors=True)
 
 
 if __name__ == "__main__":
