@@ -16,6 +16,7 @@ from aerocues.scoring.settings import FAILURES
 from aerocues.scoring.weights import WEIGHT_METHODS
 from tests.scoring.tables import table_of
 
+FEWER = settings(max_examples=60)
 SETTINGS = st.builds(
     ScoreSettings,
     alpha=st.sampled_from([0.1, 0.5, 1.0, 2.0]),
@@ -43,6 +44,7 @@ def assert_same(one: Scores, other: Scores, order: NDArray[np.int64] | None = No
     np.testing.assert_array_equal(one.ranks, other.ranks[positions])
 
 
+@FEWER
 @given(decision_tables(share_failed=3), SETTINGS)
 def test_scores_and_weights_stay_in_their_range(
     table: DecisionTable, chosen: ScoreSettings
@@ -56,6 +58,7 @@ def test_scores_and_weights_stay_in_their_range(
         np.testing.assert_allclose(weights.sum(), 1)
 
 
+@FEWER
 @given(
     decision_tables(share_failed=3),
     SETTINGS,
@@ -73,6 +76,7 @@ def test_units_of_criteria_have_no_influence(
     assert_same(score(changed, chosen), score(table, chosen))
 
 
+@FEWER
 @given(decision_tables(share_failed=3), SETTINGS, st.randoms(use_true_random=False))
 def test_order_has_no_influence(
     table: DecisionTable, chosen: ScoreSettings, random: object
@@ -92,6 +96,7 @@ def test_order_has_no_influence(
     np.testing.assert_allclose(one.weights, other.weights[criteria], rtol=0, atol=1e-9)
 
 
+@FEWER
 @given(decision_tables(), SETTINGS, st.data())
 def test_the_dominated_never_outranks_its_dominator(
     table: DecisionTable, chosen: ScoreSettings, data: st.DataObject
@@ -104,6 +109,7 @@ def test_the_dominated_never_outranks_its_dominator(
     assert scores.ranks[0] <= scores.ranks[-1]
 
 
+@FEWER
 @given(decision_tables(), st.data())
 def test_to_fail_never_pays_where_failures_are_the_worst(
     table: DecisionTable, data: st.DataObject
@@ -116,7 +122,7 @@ def test_to_fail_never_pays_where_failures_are_the_worst(
     assert scores.ranks[0] <= scores.ranks[-1]
 
 
-@settings(max_examples=30)
+@FEWER
 @given(decision_tables(), SETTINGS)
 def test_an_alternative_with_nothing_changes_no_score(
     table: DecisionTable, chosen: ScoreSettings
