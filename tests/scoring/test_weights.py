@@ -70,15 +70,16 @@ THREE_CRITERIA = np.array([[0, 0, 1], [0.5, 1, 0.5], [1, 0.5, 0]])
 
 
 def test_critic_by_hand() -> None:
-    # Sums of 1 - abs(r): 0.5 + 0, 0.5 + 0.5, 0 + 0.5.
-    assert weigh(THREE_CRITERIA, "critic") == pytest.approx([1 / 4, 1 / 2, 1 / 4])
+    # Sums of 1 - r: 0.5 + 2, 0.5 + 1.5, 2 + 1.5.
+    assert weigh(THREE_CRITERIA, "critic") == pytest.approx([2.5 / 8, 2 / 8, 3.5 / 8])
 
 
 def test_critic_counts_the_deviation() -> None:
-    assert weigh(THREE_CRITERIA * [1, 0.5, 1], "critic") == pytest.approx([1 / 3, 1 / 3, 1 / 3])
+    assert weigh(THREE_CRITERIA * [1, 0.5, 1], "critic") == pytest.approx([2.5 / 7, 1 / 7, 3.5 / 7])
 
 
 def test_published_critic_has_one_more_for_each_criterion() -> None:
+    # 1 and sums of 1 - abs(r): 1 + 0.5 + 0, 1 + 0.5 + 0.5, 1 + 0 + 0.5.
     assert weigh(THREE_CRITERIA, "critic_published") == pytest.approx([0.3, 0.4, 0.3])
 
 
@@ -94,12 +95,10 @@ def test_variance_and_entropy_agree_with_pymcdm(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_critic_agrees_with_pymcdm_where_no_correlation_is_negative(seed: int) -> None:
-    # pymcdm, as the paper of 1995, takes 1 - r, here it is 1 - abs(r).
-    generator = np.random.default_rng(seed)
-    values = generator.uniform(size=(20, 4)) + 2 * generator.uniform(size=(20, 1))
-    matrix = (values - values.min(axis=0)) / np.ptp(values, axis=0)
-    assert (np.corrcoef(matrix.T) > 0).all()
+def test_critic_agrees_with_pymcdm(seed: int) -> None:
+    matrix = min_maxed(seed)
+    matrix[:, 0] = 1 - matrix[:, 0]
+    assert (np.corrcoef(matrix.T) < 0).any()
     expected = pymcdm_weights.critic_weights(matrix)
     assert weigh(matrix, "critic") == pytest.approx(expected)
 
@@ -182,5 +181,10 @@ def test_pca_of_equal_eigenvalues_shares_alike() -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_critic_of_two_alternatives_is_no_noise(seed: int) -> None:
     # Any two alternatives make all criteria agree or contradict each other fully.
-    matrix = np.random.default_rng(seed).uniform(size=(2, 4))
+    better = np.random.default_rng(seed).uniform(0.5, 1, size=4)
+    matrix = np.stack([better, better / 2])
     assert weigh(matrix, "critic") == pytest.approx([0.25] * 4)
+    matrix[:, 0] = matrix[::-1, 0]
+    # The first contradicts three, each other one contradicts the first.
+    conflict = np.array([3, 1, 1, 1]) * np.ptp(matrix, axis=0)
+    assert weigh(matrix, "critic") == pytest.approx(conflict / conflict.sum())

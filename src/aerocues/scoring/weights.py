@@ -56,27 +56,26 @@ def _variance(spread: Spread) -> Array:
     return spread.variance
 
 
-def _conflict(spread: Spread) -> Array:
-    """1 - abs(r) for each pair of criteria; a constant one conflicts with none.
+def _correlation(spread: Spread) -> Array:
+    """Pearson's r of each pair of criteria; 1 with a constant one, which conflicts with none.
 
-    What rounding leaves of 0 would become a weight where all agree, as any two alternatives do.
+    What rounding leaves of 1 - r would become a weight where all agree, as two alternatives may.
     """
     deviation = np.sqrt(spread.variance)
     product = deviation[:, :, None] * deviation[:, None, :]
     known = product > 0
-    r = np.abs(spread.covariance) / np.where(known, product, 1)
-    return np.where(known & (r < 1 - ROUNDING), 1 - r, 0)
+    r = spread.covariance / np.where(known, product, 1)
+    r = np.where(np.abs(r) < 1 - ROUNDING, r, np.sign(r))
+    return np.where(known, r, 1)
 
 
 def _critic(spread: Spread) -> Array:
-    conflict = _conflict(spread)
-    diagonal = np.arange(conflict.shape[-1])
-    conflict[:, diagonal, diagonal] = 0
+    conflict = 1 - _correlation(spread)
     return np.asarray(np.sqrt(spread.variance) * conflict.sum(axis=-1))
 
 
 def _critic_published(spread: Spread) -> Array:
-    conflict = _conflict(spread)
+    conflict = 1 - np.abs(_correlation(spread))
     diagonal = np.arange(conflict.shape[-1])
     conflict[:, diagonal, diagonal] = 1
     return np.asarray(np.sqrt(spread.variance) * conflict.sum(axis=-1))
@@ -130,13 +129,13 @@ WEIGHT_METHODS: dict[str, WeightMethod] = {
         WeightMethod("variance", "population variance", "statistical variance", _variance),
         WeightMethod(
             "critic",
-            "standard deviation x sum of (1 - abs(r)) over the other criteria",
-            "Diakoulaki, Mavrotas and Papayannakis 1995, with abs(r)",
+            "standard deviation x sum of (1 - r) over the other criteria",
+            "Diakoulaki, Mavrotas and Papayannakis 1995",
             _critic,
         ),
         WeightMethod(
             "critic_published",
-            "as critic, with 1 more for each criterion (r = 0 on the diagonal)",
+            "standard deviation x (1 + sum of (1 - abs(r)) over the other criteria)",
             "the thesis's published figures",
             _critic_published,
         ),
