@@ -1,0 +1,1 @@
+"""Shows results: one interactive page, figures for a paper, a short text."""

@@ -1,0 +1,52 @@
+"""Numbers as JSON holds them: arrays in base64, the rest rounded."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+DIGITS = 5
+
+
+def packed_floats(values: ArrayLike) -> dict[str, str]:
+    """Little-endian float32 in row-major order, as base64; NaN stands for no value."""
+    return {"f32": _base64(np.asarray(values, dtype="<f4"))}
+
+
+def packed_bytes(values: ArrayLike) -> dict[str, str]:
+    """Unsigned bytes in row-major order, as base64."""
+    return {"u8": _base64(np.asarray(values, dtype=np.uint8))}
+
+
+def _base64(values: np.ndarray[Any, Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can write it: five significant digits, null where there is no number."""
+    if value is None or isinstance(value, str | bool):
+        return value
+    if isinstance(value, np.generic | np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, int):
+        return value
+    if isinstance(value, float):
+        return _rounded(value)
+    if isinstance(value, Mapping):
+        return {str(key): plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(each) for each in value]
+    return value.as_posix() if isinstance(value, Path) else str(value)
+
+
+def _rounded(value: float) -> float | int | None:
+    if not math.isfinite(value):
+        return None
+    rounded = float(f"{value:.{DIGITS}g}")
+    return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e15 else rounded

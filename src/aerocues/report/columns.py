@@ -1,0 +1,179 @@
+"""The figures of a pair that the report shows: one row each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.report.arrays import packed_floats
+from aerocues.scoring.combinations import METHODS
+from aerocues.scoring.criteria import CRITERIA, Criterion
+
+if TYPE_CHECKING:
+    import polars as pl
+
+Better = Literal["higher", "lower"]
+
+
+@dataclass(frozen=True)
+class PairColumn:
+    """One figure.
+
+    Attributes
+    ----------
+    name, unit : str
+    better : {"higher", "lower"} or None
+    definition : str
+    source : str
+        A column of the measurements, or a SQL expression of columns; the name by default.
+    of_success : bool
+        Whether it is shown for pairs that succeeded only: what a failed pair gives deceives.
+    """
+
+    name: str
+    unit: str
+    better: Better | None
+    definition: str
+    source: str = ""
+    of_success: bool = True
+
+
+def _of_two_images(stage: str, what: str) -> PairColumn:
+    both = f"({stage}_seconds_1 + {stage}_seconds_2) / 2"
+    definition = f"wall seconds to {what} one image, the mean of the two"
+    return PairColumn(f"{stage}_seconds", "s", "lower", definition, both, of_success=False)
+
+
+def _true(name: str, unit: str, definition: str) -> PairColumn:
+    return PairColumn(name, unit, "higher", definition, of_success=False)
+
+
+SHOWN: tuple[PairColumn, ...] = (
+    PairColumn("precision", "ratio", "higher", "inliers / matches: the inlier ratio"),
+    PairColumn("recall", "ratio", "higher", "inliers / keypoints of image 1"),
+    PairColumn("repeatability", "ratio", "higher", "inliers / the smaller number of keypoints"),
+    PairColumn("f1_score", "ratio", "higher", "harmonic mean of precision and recall"),
+    PairColumn("inliers", "count", "higher", "matches that agree with the model"),
+    PairColumn("matches", "count", "higher", "mutual matches"),
+    PairColumn("keypoints_1", "count", None, "keypoints of image 1", of_success=False),
+    PairColumn(
+        "total_seconds",
+        "s",
+        "lower",
+        "seconds for one image (detect, describe) and one pair (match, verify)",
+        of_success=False,
+    ),
+    PairColumn("seconds_per_1k_matches", "s", "lower", "seconds for 1000 matches"),
+    PairColumn("seconds_per_1k_inliers", "s", "lower", "seconds for 1000 inliers"),
+    _of_two_images("detect", "detect in"),
+    _of_two_images("describe", "describe"),
+    PairColumn("match_seconds", "s", "lower", "wall seconds to match", of_success=False),
+    PairColumn("verify_seconds", "s", "lower", "wall seconds to verify", of_success=False),
+    _true("gt_precision@3", "ratio", "share of matches right within 3 px, by the ground truth"),
+    _true("gt_matching_score@3", "ratio", "matches right within 3 px / keypoints of image 1"),
+    _true("gt_repeatability", "ratio", "covisible keypoints found again within 3 px"),
+    _true("homography_auc@3", "ratio", "accuracy of the estimated homography up to 3 px"),
+)
+
+
+def _unit(criterion: Criterion) -> str:
+    name = criterion.name
+    if "seconds" in name:
+        return "s"
+    units = {"descriptor_bytes": "B", "peak_memory_mb": "MB", "excess_inliers": "count"}
+    return units.get(name, "ratio")
+
+
+def columns_for(criteria: Sequence[Criterion]) -> list[PairColumn]:
+    """The figures to show where these criteria score: they come first, each once."""
+    shown = {column.name: column for column in SHOWN}
+    first = {
+        each.name: shown.get(each.name)
+        or PairColumn(each.name, _unit(each), each.better, each.description, each.source)
+        for each in criteria
+        if not each.reconstruction
+    }
+    return list({**first, **shown}.values())
+
+
+def column_facts(
+    rows: pl.DataFrame,
+    positions: tuple[NDArray[np.int64], NDArray[np.int64]],
+    shape: tuple[int, int],
+    succeeded: Sequence[str],
+    criteria: Sequence[Criterion],
+) -> dict[str, dict[str, Any]]:
+    """The figures that are known of any pair, as arrays of combinations x pairs.
+
+    Parameters
+    ----------
+    rows : pl.DataFrame
+        Of one dataset and machine.
+    positions : two (rows,) int64
+        Combination and pair of each row.
+    shape : (int, int)
+        Combinations and pairs.
+    succeeded : sequence of str
+        Statuses of pairs that succeeded.
+    criteria : sequence of Criterion
+        That score.
+    """
+    found = {}
+    success = rows["status"].is_in(list(succeeded)).to_numpy()
+    for column in columns_for(criteria):
+        numbers = _numbers(rows, column.source or column.name)
+        if numbers is None:
+            continue
+        values = np.full(shape, np.nan)
+        values[positions] = np.where(success, numbers, np.nan) if column.of_success else numbers
+        if not np.isnan(values).all():
+            found[column.name] = {
+                "unit": column.unit,
+                "better": column.better,
+                "definition": column.definition,
+                "values": packed_floats(values),
+            }
+    return found
+
+
+def _numbers(rows: pl.DataFrame, source: str) -> NDArray[np.float64] | None:
+    """(rows,) float64, NaN where there is no finite number; None without such a column."""
+    import polars as pl
+
+    try:
+        values = rows[source] if source in rows.columns else rows.select(pl.sql_expr(source))
+    except pl.exceptions.PolarsError:
+        return None
+    series = values if isinstance(values, pl.Series) else values.to_series()
+    numbers = series.cast(pl.Float64).fill_null(float("nan")).to_numpy()
+    return np.where(np.isfinite(numbers), numbers, np.nan)
+
+
+def matrix_positions(
+    rows: pl.DataFrame, combinations: Mapping[str, int], pairs: Mapping[int, int]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The combination and the pair of each row, as positions."""
+    import polars as pl
+
+    names = rows.select(pl.concat_str(METHODS, separator="-")).to_series()
+    return (
+        np.array([combinations[name] for name in names], dtype=np.int64),
+        np.array([pairs[pair] for pair in rows["pair"]], dtype=np.int64),
+    )
+
+
+def criterion_facts(criteria: Sequence[Criterion] = CRITERIA) -> list[dict[str, Any]]:
+    """Criteria as the page has them."""
+    return [
+        {
+            "name": each.name,
+            "better": each.better,
+            "description": each.description,
+            "reconstruction": each.reconstruction,
+        }
+        for each in criteria
+    ]

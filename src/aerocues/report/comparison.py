@@ -1,0 +1,71 @@
+"""Entries side by side: rankings across data sets, times across machines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.across import Entry, Machines, compare_datasets, compare_machines
+from aerocues.scoring.cues import rank
+
+OF_SUMMARY = ("alternative", "mean", "min", "spread", "mean_rank", "worst_rank", "rankings")
+
+
+def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
+    """Rank correlations of the entries and how versatile each combination is; None for one."""
+    if len(entries) < 2:
+        return None
+    try:
+        comparison = compare_datasets(entries)
+    except ScoreError:
+        # Nothing was measured in two of them.
+        return None
+    ranks = rank(comparison.scores)
+    position = {name: number for number, name in enumerate(comparison.alternatives)}
+    return {
+        "names": comparison.names,
+        "spearman": comparison.spearman(),
+        "kendall": comparison.kendall(),
+        "shared": comparison.shared(),
+        "versatility": [
+            {
+                **{name: row[name] for name in OF_SUMMARY},
+                "scores": comparison.scores[:, position[row["alternative"]]],
+                "ranks": ranks[:, position[row["alternative"]]],
+            }
+            for row in comparison.versatility().to_dicts()
+        ],
+    }
+
+
+def machine_facts(entries: Sequence[Entry]) -> list[dict[str, Any]]:
+    """Every two entries that are the same data set on different machines."""
+    facts = []
+    for first, second in _pairs_of_machines(entries):
+        try:
+            facts.append(_machines(compare_machines([first, second])[0]))
+        except ScoreError:
+            # They share no combination.
+            continue
+    return facts
+
+
+def _pairs_of_machines(entries: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
+    return [
+        (first, second)
+        for position, first in enumerate(entries)
+        for second in entries[position + 1 :]
+        if first.dataset == second.dataset and first.machine != second.machine
+    ]
+
+
+def _machines(found: Machines) -> dict[str, Any]:
+    times = found.times
+    return {
+        "first": found.first.name,
+        "second": found.second.name,
+        "spearman": found.rankings.spearman()[0, 1],
+        "kendall": found.rankings.kendall()[0, 1],
+        "times": {"unavailable": times} if isinstance(times, str) else times.to_dicts(),
+    }

@@ -1,0 +1,172 @@
+"""One data set on one machine, with everything that the page shows of it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from aerocues.evaluation.medians import combination_medians
+from aerocues.evaluation.statuses import STATUSES
+from aerocues.report.arrays import packed_bytes
+from aerocues.report.columns import column_facts, matrix_positions
+from aerocues.report.curves import curves_of, step_of
+from aerocues.report.scores import method_labels, score_facts
+from aerocues.report.validation import validation_facts
+from aerocues.scoring.across import Entry
+from aerocues.scoring.combinations import SUCCESS, SUCCESS_WITHOUT_CHANCE_TEST
+from aerocues.scoring.ranking import Ranking
+from aerocues.scoring.settings import preset_named
+from aerocues.scoring.validation import Validation
+
+if TYPE_CHECKING:
+    import polars as pl
+
+NOT_MEASURED = "not measured"
+STAGES = ("detect", "describe", "match", "verify", "total")
+MOST_FAILURES = 60
+
+
+@dataclass(frozen=True)
+class ReportEntry:
+    """What the report shows of one data set on one machine.
+
+    Attributes
+    ----------
+    entry : Entry
+    ranking : Ranking
+    validation : Validation
+    settings : dict
+        As in ``run.json``.
+    """
+
+    entry: Entry
+    ranking: Ranking
+    validation: Validation
+    settings: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        return self.entry.name
+
+    @property
+    def rows(self) -> pl.DataFrame:
+        """Its measured rows."""
+        return self.entry.rows
+
+    @property
+    def combinations(self) -> tuple[str, ...]:
+        """By name; arrays are in this order."""
+        return self.ranking.scores.table.alternatives
+
+    @property
+    def succeeded(self) -> tuple[str, ...]:
+        """Statuses of pairs that count as a success."""
+        chance_fails = preset_named(self.entry.preset).chance_fails
+        return SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
+
+    def seconds(self) -> dict[str, float]:
+        """Median time of each combination for an image and a pair, where it is known."""
+        medians = combination_medians(self.rows).drop_nulls("total_seconds")
+        return dict(medians.select("combination", "total_seconds").iter_rows())
+
+    def pairs(self) -> list[dict[str, Any]]:
+        """The pairs in order: number, sequence, images, and how far along a curve they are."""
+        import polars as pl
+
+        named = self.rows.select(
+            "pair", pl.col("sequence").fill_null("").cast(pl.String), "image_1", "image_2"
+        )
+        pairs = named.unique().sort("pair").to_dicts()
+        return [{**pair, "step": step_of(self.entry.dataset, pair)} for pair in pairs]
+
+
+def entry_facts(found: ReportEntry) -> dict[str, Any]:
+    """An entry as the page has it."""
+    entry, rows, pairs = found.entry, found.rows, found.pairs()
+    positions = matrix_positions(
+        rows,
+        {name: position for position, name in enumerate(found.combinations)},
+        {pair["pair"]: position for position, pair in enumerate(pairs)},
+    )
+    shape = (len(found.combinations), len(pairs))
+    table = found.ranking.scores.table
+    measured = found.settings.get("dataset") or {}
+    return {
+        "name": entry.name,
+        "dataset": entry.dataset,
+        "machine": entry.machine,
+        "preset": entry.preset,
+        "timing": _timing(rows),
+        "geometry": measured.get("geometry"),
+        "combinations": found.combinations,
+        **method_labels(found.combinations),
+        "pairs": pairs,
+        "curves": curves_of(entry.dataset, pairs),
+        **_status_matrix(rows, positions, shape),
+        "columns": column_facts(rows, positions, shape, found.succeeded, table.criteria),
+        "score": score_facts(found.ranking, found.seconds(), entry.preset),
+        "medians": _medians(found),
+        "validation": validation_facts(found.ranking.scores, found.validation),
+        **_outcomes(rows),
+        "excluded": _excluded(found.settings),
+        "run": {name: value for name, value in found.settings.items() if name not in LONG},
+    }
+
+
+LONG = ("combinations", "exclusions")
+
+
+def _timing(rows: pl.DataFrame) -> str:
+    kinds = rows["timing"].unique().to_list()
+    if kinds == [None]:
+        return "unknown"
+    return str(kinds[0]) if len(kinds) == 1 else "mixed"
+
+
+def _status_matrix(rows: pl.DataFrame, positions: Any, shape: tuple[int, int]) -> dict[str, Any]:
+    names = [status.name for status in STATUSES]
+    names += sorted(set(rows["status"].unique()) - set(names))
+    names.append(NOT_MEASURED)
+    matrix = np.full(shape, len(names) - 1, dtype=np.uint8)
+    matrix[positions] = [names.index(status) for status in rows["status"]]
+    return {"statuses": names, "status": packed_bytes(matrix)}
+
+
+def _medians(found: ReportEntry) -> dict[str, list[float | None]]:
+    medians = {row["combination"]: row for row in combination_medians(found.rows).to_dicts()}
+    return {
+        stage: [medians[name][f"{stage}_seconds"] for name in found.combinations]
+        for stage in STAGES
+    }
+
+
+def _outcomes(rows: pl.DataFrame) -> dict[str, Any]:
+    """Rows by status, and those that are not ok by status and methods."""
+    import polars as pl
+
+    counts = rows.group_by("status").len().sort("len", "status", descending=[True, False])
+    failures = (
+        rows.filter(pl.col("status") != "ok")
+        .group_by("status", "detector", "descriptor")
+        .agg(pl.len().alias("rows"), pl.col("message").drop_nulls().first())
+        .sort("rows", "status", "detector", "descriptor", descending=[True, False, False, False])
+    )
+    return {
+        "counts": dict(counts.iter_rows()),
+        "failures": failures.head(MOST_FAILURES).to_dicts(),
+        "failures_left_out": max(len(failures) - MOST_FAILURES, 0),
+    }
+
+
+def _excluded(settings: dict[str, Any]) -> list[dict[str, Any]]:
+    """What the images ruled out, by reason and number of pairs."""
+    together: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
+    for exclusion in settings.get("exclusions") or []:
+        together[exclusion["reason"], exclusion["pairs"]].append(exclusion["combination"])
+    return [
+        {"reason": reason, "combinations": names, "pairs": pairs}
+        for (reason, pairs), names in together.items()
+    ]
