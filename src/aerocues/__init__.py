@@ -5,6 +5,7 @@
     dataset = aerocues.open_dataset("photos", max_width=1000)
     results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
     print(aerocues.score(results).frame("combination"))
+    results.report("report.html")
 
 Everything here is loaded when it is first used, so that importing the package costs nothing.
 """
@@ -17,11 +18,12 @@ if TYPE_CHECKING:
     from aerocues.datasets.catalog import open_dataset
     from aerocues.datasets.dataset import Dataset
     from aerocues.errors import AerocuesError
-    from aerocues.evaluation.importing import import_results
-    from aerocues.evaluation.results import Results
-    from aerocues.evaluation.run import Limits, Observer, run
+    from aerocues.evaluation.run import Limits, Observer
+    from aerocues.measuring import import_results, run
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
+    from aerocues.report.report import write_report
+    from aerocues.results import Results
     from aerocues.scoring.measured import score
     from aerocues.scoring.ranking import Ranking
 
@@ -30,13 +32,14 @@ if TYPE_CHECKING:
 _MODULES = {
     "open_dataset": "datasets.catalog",
     "Dataset": "datasets.dataset",
-    "run": "evaluation.run",
+    "run": "measuring",
     "Limits": "evaluation.run",
     "Observer": "evaluation.run",
-    "Results": "evaluation.results",
-    "import_results": "evaluation.importing",
+    "Results": "results",
+    "import_results": "measuring",
     "score": "scoring.measured",
     "Ranking": "scoring.ranking",
+    "write_report": "report.report",
     "Combination": "methods.combination",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
@@ -60,6 +63,7 @@ __all__ = [
     "open_dataset",
     "run",
     "score",
+    "write_report",
 ]
 
 

@@ -8,10 +8,11 @@ from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from aerocues.datasets.dataset import Dataset, Geometry
+from aerocues.datasets.dataset import Dataset, Geometry, Source
 from aerocues.datasets.folder import open_flight, open_folder
 from aerocues.datasets.homography_sequences import open_hpatches, open_oxford
 from aerocues.datasets.options import Options
+from aerocues.datasets.pairing import PairsFile, parse_pairs
 from aerocues.datasets.synthetic import open_synthetic
 from aerocues.datasets.uav import open_uav
 from aerocues.errors import DatasetError
@@ -222,7 +223,30 @@ def open_dataset(
     if pairs is not None and not kind.takes_pairs:
         raise DatasetError(f"{kind.name} has pairs of its own; leave --pairs out")
     dataset = kind.load(target, Options(pairs, max_width, equalize))
-    return _restricted(dataset, limit, sequences)
+    names = sequences if sequences is None or isinstance(sequences, str) else ",".join(sequences)
+    source = Source(
+        spec=_absolute(kind, target),
+        pairs=_absolute_pairs(pairs),
+        max_width=max_width,
+        equalize=equalize,
+        limit=limit,
+        sequences=names,
+    )
+    return replace(_restricted(dataset, limit, sequences), source=source)
+
+
+def _absolute(kind: DatasetKind, target: Path | None) -> str:
+    """The text form of a dataset that means the same in any folder."""
+    if target is None:
+        return kind.name
+    # A plain folder has no word before a colon; nor does its path begin with one, being absolute.
+    return str(target.absolute()) if kind.form == "DIR" else f"{kind.name}:{target.absolute()}"
+
+
+def _absolute_pairs(pairs: str | None) -> str | None:
+    if pairs is None or not isinstance(parse_pairs(pairs), PairsFile):
+        return pairs
+    return str(Path(pairs).expanduser().absolute())
 
 
 def _parse(spec: str) -> tuple[DatasetKind, Path | None]:

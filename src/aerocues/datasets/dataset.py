@@ -96,12 +96,33 @@ class Pair:
     homography: NDArray[np.float64] | None = None
 
 
+@dataclass(frozen=True)
+class Source:
+    """What `open_dataset` was given, so that the same images can be opened again.
+
+    Parameters
+    ----------
+    spec : str
+        Text form of the dataset, with an absolute path.
+    pairs, max_width, equalize, limit, sequences
+        As `open_dataset` takes them; the names of sequences as one text.
+    """
+
+    spec: str
+    pairs: str | None = None
+    max_width: int | None = None
+    equalize: str = "none"
+    limit: int | None = None
+    sequences: str | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Dataset:
     """Images and the pairs of them that are matched.
 
     ``geometry`` names the model that relates two images: a homography (plane or rotation) or
     epipolar geometry. ``settings`` records how the dataset was made (pairs, size, equalisation).
+    ``source`` tells how to open it again, where that is known; no measurement depends on it.
     """
 
     name: str
@@ -109,6 +130,7 @@ class Dataset:
     pairs: Sequence[Pair]
     geometry: Geometry
     settings: tuple[tuple[str, str], ...] = ()
+    source: Source | None = None
 
     def image(self, name: str) -> Image:
         """The image called `name`; KeyError where there is none."""

@@ -138,6 +138,7 @@ def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) ->
             "images": len(context.dataset.images),
             "pairs": len(context.dataset.pairs),
             "settings": dict(context.dataset.settings),
+            "source": asdict(context.dataset.source) if context.dataset.source else None,
         },
         "preset": context.preset,
         "protocol": asdict(context.protocol),

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from aerocues.errors import ScoreError
+from aerocues.evaluation.export import write_file
 from aerocues.evaluation.results import Results
 from aerocues.report.entry import ReportEntry
-from aerocues.scoring.across import Entry, entries_of
+from aerocues.scoring.across import entries_of
 from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.ranking import rank_alternatives
 from aerocues.scoring.validation import validate
+
+Progress = Callable[[str], None]
+PICTURED = 4
+MEGABYTES = 15.0
 
 
 def report_entries(
@@ -22,31 +28,155 @@ def report_entries(
     reconstruction: bool | None = None,
     resamples: int = RESAMPLES,
     seed: int = 0,
+    progress: Progress | None = None,
     **changes: object,
 ) -> list[ReportEntry]:
-    """Score and validate every data set in some results, each machine by itself."""
+    """Score and validate every data set in some results, each machine by itself.
+
+    Parameters
+    ----------
+    results : sequence of Results
+        One or more.
+    preset, criteria
+        See `aerocues.score`.
+    reconstruction : bool, optional
+        Whether to add the criteria of reconstruction; by default, where there are results of one
+        data set only and most combinations were reconstructed.
+    resamples, seed
+        Of the intervals.
+    progress : callable, optional
+        Told in a few words what is being done.
+    **changes
+        Of the preset's settings: ``alpha, weights, aggregation, failures``; None changes nothing.
+
+    Raises
+    ------
+    ScoreError
+        If one of them cannot be scored, or they suit different presets and none was chosen.
+    """
     if not results:
         raise ScoreError("there are no results to report on; name a results folder")
+    told = progress or _silent
+    told("reading and scoring")
+    settings = _settings_of_entries(results)
+    if reconstruction is None and len(settings) > 1:
+        reconstruction = False
+    entries = entries_of(
+        results, preset, criteria=criteria, reconstruction=reconstruction, **changes
+    )
     found = []
-    for each, entry in _entries(results, preset, criteria, reconstruction, changes):
+    for each, entry in zip(settings, entries, strict=True):
+        told(f"scoring {entry.name}")
         scores = entry.scores
         ranking = rank_alternatives(scores.table, scores.settings, resamples=resamples, seed=seed)
-        found.append(ReportEntry(entry, ranking, validate(scores, seed=seed), each.settings))
+        told(f"validating {entry.name}")
+        found.append(ReportEntry(entry, ranking, validate(scores, seed=seed), each))
     return found
 
 
-def _entries(
-    results: Sequence[Results],
-    preset: str | None,
-    criteria: Sequence[str] | None,
-    reconstruction: bool | None,
-    changes: dict[str, Any],
-) -> list[tuple[Results, Entry]]:
-    entries = entries_of(
-        results, preset, criteria=criteria, reconstruction=bool(reconstruction), **changes
-    )
-    by_rows = [(each, each.table()) for each in results]
-    sources = [
-        each for each, rows in by_rows for _ in range(rows.select("dataset", "machine").n_unique())
+def _silent(_: str) -> None:
+    pass
+
+
+def _settings_of_entries(results: Sequence[Results]) -> list[dict[str, Any]]:
+    """What ``run.json`` says, for each data set and machine in the order of `entries_of`."""
+    return [
+        each.settings
+        for each in results
+        for _ in range(each.table().select("dataset", "machine").n_unique())
     ]
-    return list(zip(sources, entries, strict=True))
+
+
+def default_title(entries: Sequence[ReportEntry]) -> str:
+    """The data sets by name."""
+    names = ", ".join(dict.fromkeys(found.name for found in entries))
+    return f"Local features on {names}"
+
+
+def write_report(
+    results: Results | Sequence[Results],
+    output: str | Path = "report.html",
+    *,
+    title: str | None = None,
+    preset: str | None = None,
+    criteria: Sequence[str] | None = None,
+    reconstruction: bool | None = None,
+    images: Sequence[str] = (),
+    pictures: int = PICTURED,
+    max_megabytes: float = MEGABYTES,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+    progress: Progress | None = None,
+    **changes: object,
+) -> Path:
+    """Write one page that shows everything, for a browser; it needs no network.
+
+    Parameters
+    ----------
+    results : Results or sequence of Results
+        Of one or several data sets and machines.
+    output : path
+        An HTML file; one that is there is replaced.
+    title : str, optional
+    preset, criteria, reconstruction, resamples, seed, **changes
+        How to score; see `report_entries`.
+    images : sequence of str
+        Where the images of data sets are that have moved, in the form of `open_dataset`.
+    pictures : int
+        How many combinations of each data set to show pictures of; 0 for none.
+    max_megabytes : float
+        Pictures are left out until the page is no larger than this.
+    progress : callable, optional
+        Told in a few words what is being done.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    AerocuesError
+        If the results cannot be scored or the file not be written.
+    """
+    listed = [results] if isinstance(results, Results) else list(results)
+    entries = report_entries(
+        listed,
+        preset,
+        criteria=criteria,
+        reconstruction=reconstruction,
+        resamples=resamples,
+        seed=seed,
+        progress=progress,
+        **changes,
+    )
+    return write_page(
+        entries,
+        Path(output),
+        title=title,
+        images=images,
+        pictures=pictures,
+        max_megabytes=max_megabytes,
+        progress=progress,
+    )
+
+
+def write_page(
+    entries: Sequence[ReportEntry],
+    output: Path,
+    *,
+    title: str | None = None,
+    images: Sequence[str] = (),
+    pictures: int = PICTURED,
+    max_megabytes: float = MEGABYTES,
+    progress: Progress | None = None,
+) -> Path:
+    """Write the page of entries that are scored; see `write_report`."""
+    from aerocues.report.page import page_of
+    from aerocues.report.payload import payload_of
+
+    told = progress or _silent
+    payload = payload_of(entries, title or default_title(entries))
+    told(f"writing {output}")
+    write_file(output, page_of(payload).encode("utf-8"))
+    return output

@@ -87,7 +87,7 @@ def entries_of(
     preset: str | None = None,
     *,
     criteria: Sequence[str] | None = None,
-    reconstruction: bool = False,
+    reconstruction: bool | None = False,
     **changes: object,
 ) -> list[Entry]:
     """Score every data set in some results, each machine by itself.
@@ -97,8 +97,9 @@ def entries_of(
     results : sequence of Stored
     preset, criteria
         See `measured.table_of`.
-    reconstruction : bool
-        Whether to add the criteria of reconstruction, which all of the results then need.
+    reconstruction : bool or None
+        Whether to add the criteria of reconstruction, which all of the results then need; None:
+        where most combinations of a data set were reconstructed.
     **changes
         Of the preset's settings; None changes nothing.
 

@@ -1,0 +1,126 @@
+"""`aerocues report`: one page that shows everything."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from aerocues.cli.scoring import (
+    AggregationOption,
+    AlphaOption,
+    CriteriaOption,
+    FailuresOption,
+    PresetOption,
+    ReconstructionOption,
+    SeedOption,
+    WeightsOption,
+)
+
+if TYPE_CHECKING:
+    from aerocues.report.entry import ReportEntry
+
+STANDARD_OUTPUT = "-"
+PAGE = Path("report.html")
+
+
+class Format(StrEnum):
+    """Values of ``--format``."""
+
+    HTML = "html"
+    MARKDOWN = "markdown"
+
+
+def report(
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="RESULTS...", help="Results folders or packed ones.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="report.html; Markdown: standard output."
+        ),
+    ] = None,
+    form: Annotated[
+        Format, typer.Option("--format", help="A page, or a short text for chat or review.")
+    ] = Format.HTML,
+    title: Annotated[str | None, typer.Option(metavar="TEXT", help="Title of the page.")] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+    figures: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write figures for a paper there, as SVG and PDF."),
+    ] = None,
+    images: Annotated[
+        list[str] | None,
+        typer.Option(metavar="DATASET", help="Where images are that have moved: oxford:DIR."),
+    ] = None,
+    pictures: Annotated[
+        int,
+        typer.Option(min=0, metavar="N", help="Combinations of a data set shown in pictures."),
+    ] = 4,
+    max_megabytes: Annotated[
+        float, typer.Option(min=5, metavar="MB", help="Leave out pictures beyond this size.")
+    ] = 15,
+    preset: PresetOption = None,
+    criteria: CriteriaOption = None,
+    failures: FailuresOption = None,
+    alpha: AlphaOption = None,
+    weights: WeightsOption = None,
+    aggregation: AggregationOption = None,
+    reconstruction: ReconstructionOption = None,
+    resamples: Annotated[
+        int, typer.Option(min=2, metavar="N", help="How often the pairs are drawn anew.")
+    ] = 1000,
+    seed: SeedOption = 0,
+) -> None:
+    """Show everything in one interactive page that needs no network.
+
+    Several results are set side by side: data sets, and machines.
+    """
+    import aerocues
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.scoring import named
+    from aerocues.report.report import report_entries, write_page
+
+    with interruptible():
+        entries = report_entries(
+            [aerocues.Results(folder) for folder in folders],
+            preset,
+            criteria=named(criteria),
+            reconstruction=reconstruction,
+            resamples=resamples,
+            seed=seed,
+            progress=_tell,
+            failures=failures.value if failures else None,
+            alpha=alpha,
+            weights=named(weights),
+            aggregation=aggregation,
+        )
+        if form is Format.MARKDOWN:
+            _write_markdown(entries, title, output)
+            return
+        page = write_page(
+            entries,
+            output or PAGE,
+            title=title,
+            images=images or (),
+            pictures=pictures,
+            max_megabytes=max_megabytes,
+            progress=_tell,
+        )
+    typer.echo(f"{page} ({page.stat().st_size / 1e6:.1f} MB)")
+    if show:
+        typer.launch(str(page))
+
+
+def _tell(what: str) -> None:
+    """Say what is being done, where somebody may be waiting."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"{what} ...\n")
+
+
+def _write_markdown(entries: list[ReportEntry], title: str | None, output: Path | None) -> None:
+    raise NotImplementedError

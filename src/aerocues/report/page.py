@@ -1,0 +1,64 @@
+"""The page: one HTML file with the template, the program, plotly and the payload in it."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from collections.abc import Mapping
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from typing import Any
+
+PLACE = re.compile(r"\{\{(title|style|payload|app|plotly)\}\}")
+# What would end the element that the text stands in.
+END_OF_ELEMENT = re.compile(r"</(?=script|style)", re.IGNORECASE)
+
+
+def page_of(payload: Mapping[str, Any]) -> str:
+    """The whole page, which needs nothing else and asks for nothing else.
+
+    Parameters
+    ----------
+    payload : mapping
+        As `payload.payload_of` gives it.
+    """
+    folder = files("aerocues.report") / "page"
+    contents = {
+        "title": html.escape(str(payload["title"])),
+        "style": _inside_element(_read(folder / "style.css")),
+        "payload": payload_text(payload),
+        "app": _inside_element(_application(folder / "app")),
+        "plotly": _inside_element(_plotly()),
+    }
+    return PLACE.sub(lambda found: contents[found[1]], _read(folder / "index.html"))
+
+
+def payload_text(payload: Mapping[str, Any]) -> str:
+    """The payload as JSON that nothing in it can end or begin an element with."""
+    text = json.dumps(payload, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c")
+
+
+def _read(file: Traversable) -> str:
+    return file.read_text(encoding="utf-8")
+
+
+def _inside_element(text: str) -> str:
+    return END_OF_ELEMENT.sub(r"<\\/", text)
+
+
+def _application(folder: Traversable) -> str:
+    """All files of the program in the order of their names, in a scope of their own."""
+    parts = sorted(
+        (part for part in folder.iterdir() if part.name.endswith(".js")),
+        key=lambda part: part.name,
+    )
+    program = "\n".join(_read(part) for part in parts)
+    return f'(() => {{\n"use strict";\n{program}\n}})();'
+
+
+def _plotly() -> str:
+    from plotly.offline import get_plotlyjs
+
+    return str(get_plotlyjs())
