@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from importlib.metadata import version as version_of
 from typing import Any
 
 from aerocues.report.arrays import plain
@@ -31,14 +32,13 @@ def payload_of(
     notes : sequence of str
         What the section on the method is to say besides.
     """
-    import aerocues
-
+    version = version_of("aerocues")
     scored = [found.entry for found in entries]
     measured = (name for found in entries for name in found.combinations)
     facts = {
         "title": title,
         "made": datetime.now(UTC).isoformat(timespec="seconds"),
-        "version": aerocues.__version__,
+        "version": version,
         "entries": [entry_facts(found) for found in entries],
         "comparison": comparison_facts(scored),
         "machines": machine_facts(scored),
@@ -46,6 +46,6 @@ def payload_of(
         "images": images or {},
         "pictures": list(pictures),
         "models": [],
-        "method": method_facts(aerocues.__version__, notes),
+        "method": method_facts(version, notes),
     }
     return dict(plain(facts))
