@@ -11,15 +11,14 @@ from aerocues.report.arrays import plain
 from aerocues.report.comparison import comparison_facts, machine_facts
 from aerocues.report.entry import ReportEntry, entry_facts
 from aerocues.report.method import incompatible, method_facts
+from aerocues.report.pictures import Pictures
 
 
 def payload_of(
     entries: Sequence[ReportEntry],
     title: str,
     *,
-    images: dict[str, Any] | None = None,
-    pictures: Sequence[dict[str, Any]] = (),
-    notes: Sequence[str] = (),
+    pictures: Pictures | None = None,
 ) -> dict[str, Any]:
     """The payload of the page.
 
@@ -27,12 +26,11 @@ def payload_of(
     ----------
     entries : sequence of ReportEntry
     title : str
-    images, pictures
-        As `pictures.pictures_of` gives them.
-    notes : sequence of str
-        What the section on the method is to say besides.
+    pictures : Pictures, optional
+        Their notes are said in the section on the method.
     """
     version = version_of("aerocues")
+    shown = pictures or Pictures()
     scored = [found.entry for found in entries]
     measured = (name for found in entries for name in found.combinations)
     facts = {
@@ -43,9 +41,9 @@ def payload_of(
         "comparison": comparison_facts(scored),
         "machines": machine_facts(scored),
         "incompatible": incompatible(measured),
-        "images": images or {},
-        "pictures": list(pictures),
+        "images": shown.images,
+        "pictures": shown.pictures,
         "models": [],
-        "method": method_facts(version, notes),
+        "method": method_facts(version, shown.notes),
     }
     return dict(plain(facts))

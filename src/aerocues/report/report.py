@@ -174,9 +174,19 @@ def write_page(
     """Write the page of entries that are scored; see `write_report`."""
     from aerocues.report.page import page_of
     from aerocues.report.payload import payload_of
+    from aerocues.report.pictures import pictures_of
+    from aerocues.report.size import fitting
 
     told = progress or _silent
-    payload = payload_of(entries, title or default_title(entries))
+    found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
     told(f"writing {output}")
-    write_file(output, page_of(payload).encode("utf-8"))
+    heading = title or default_title(entries)
+    without = page_of(payload_of(entries, heading)).encode()
+    room = int(max_megabytes * 1e6) - len(without)
+    kept = fitting(found, room)
+    page = without
+    if kept.pictures or kept.notes:
+        payload = payload_of(entries, heading, pictures=kept)
+        page = page_of(payload).encode()
+    write_file(output, page)
     return output

@@ -1,0 +1,94 @@
+"""The images of results, opened again as they were measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.errors import DatasetError
+from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
+from aerocues.evaluation.unit import Context
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import preset_named
+from aerocues.report.entry import ReportEntry
+
+HINT = "name their place with --images, in the form that 'aerocues run' takes"
+
+
+def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
+    """Everything that is needed to repeat measurements of an entry.
+
+    Parameters
+    ----------
+    found : ReportEntry
+    moved : sequence of str
+        Datasets in the form of `open_dataset`; the first with all images of the entry is taken in
+        place of the one that the results name.
+
+    Raises
+    ------
+    DatasetError
+        If it is not known where the images are, or they are gone.
+    SelectionError
+        If the results were measured under a preset that is not known here.
+    """
+    settings = found.settings
+    measured = settings.get("dataset") or {}
+    if settings.get("imported") or measured.get("name") != found.entry.dataset:
+        raise DatasetError("the measurements were imported, and their images are not known")
+    preset = preset_named(str(settings["preset"]))
+    return Context(
+        dataset=_with_pairs(_dataset(found, measured, moved), found.pairs()),
+        methods=installed_methods().with_preset(preset),
+        preset=preset.name,
+        protocol=_protocol(settings["protocol"]),
+        settings_key=str(settings["settings_key"]),
+        machine=found.entry.machine,
+    )
+
+
+def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[str]) -> Dataset:
+    width = measured["settings"].get("max_width", "full")
+    options: dict[str, Any] = {
+        "max_width": None if width == "full" else int(width),
+        "equalize": measured["settings"].get("equalize", "none"),
+    }
+    for spec in moved:
+        dataset = open_dataset(spec, **options)
+        if not _missing(dataset, found):
+            return dataset
+    source = measured.get("source")
+    if not source:
+        raise DatasetError(f"the results do not tell where the images are; {HINT}")
+    dataset = open_dataset(source["spec"], **options)
+    if missing := _missing(dataset, found):
+        raise DatasetError(f"the image {missing} is gone; {HINT}")
+    return dataset
+
+
+def _missing(dataset: Dataset, found: ReportEntry) -> str | None:
+    """An image of the entry that the dataset does not have."""
+    names = {image.name for image in dataset.images}
+    needed = (pair[image] for pair in found.pairs() for image in ("image_1", "image_2"))
+    return next((name for name in needed if name not in names), None)
+
+
+def _with_pairs(dataset: Dataset, pairs: Sequence[Mapping[str, Any]]) -> Dataset:
+    """The dataset with the pairs that were measured, however they were chosen then."""
+    made = [
+        Pair(pair["pair"], pair["image_1"], pair["image_2"], pair["sequence"]) for pair in pairs
+    ]
+    return replace(dataset, pairs=made)
+
+
+def _protocol(recorded: Mapping[str, Any]) -> MeasurementProtocol:
+    chance = recorded["chance"]
+    return MeasurementProtocol(
+        seed=recorded["seed"],
+        timing=recorded["timing"],
+        verification=Verification(**recorded["verification"]),
+        chance=ChanceTest(**chance) if chance else None,
+    )

@@ -1,0 +1,48 @@
+"""Keeps the page small enough to be mailed: pictures give way first."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from itertools import chain, zip_longest
+from typing import Any
+
+from aerocues.report.pictures import Pictures
+
+
+def fitting(found: Sequence[Pictures], room: int) -> Pictures:
+    """As many pictures as there is room for, the most important of each entry first.
+
+    Parameters
+    ----------
+    found : sequence of Pictures
+        One an entry.
+    room : int
+        Bytes.
+    """
+    images = {key: image for each in found for key, image in each.images.items()}
+    kept = Pictures(notes=[note for each in found for note in each.notes])
+    # The first of every entry come before the second of any.
+    turns = chain.from_iterable(zip_longest(*(each.pictures for each in found)))
+    left_out = 0
+    for picture in filter(None, turns):
+        new = {key: images[key] for key in (picture["image_1"], picture["image_2"])}
+        new = {key: image for key, image in new.items() if key not in kept.images}
+        needed = _size(picture) + sum(_size(image) for image in new.values())
+        if left_out or needed > room:
+            left_out += 1
+            continue
+        room -= needed
+        kept.images.update(new)
+        kept.pictures.append(picture)
+    if left_out:
+        kept.notes.append(
+            f"{left_out} of {left_out + len(kept.pictures)} pictures are left out to keep the page "
+            "small (--max-megabytes)"
+        )
+    return kept
+
+
+def _size(facts: dict[str, Any]) -> int:
+    """Bytes as JSON, with the key and commas around it."""
+    return len(json.dumps(facts, separators=(",", ":"))) + 200
