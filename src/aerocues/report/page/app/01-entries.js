@@ -1,0 +1,112 @@
+/* Entries: one data set on one machine each. A number `a` is the position of a combination. */
+
+const entries = payload.entries;
+const CODES = ["detector", "descriptor", "norm", "matcher"];
+const remembered = new WeakMap();
+
+/* The result of `compute`, computed once for each entry and key. */
+function remember(entry, key, compute) {
+  if (!remembered.has(entry)) remembered.set(entry, new Map());
+  const known = remembered.get(entry);
+  if (!known.has(key)) known.set(key, compute());
+  return known.get(key);
+}
+
+function hasColumn(entry, name) {
+  return Object.hasOwn(entry.columns, name);
+}
+
+/* Values of one combination over the pairs; NaN where there is none. */
+function pairValues(entry, name, a) {
+  const count = entry.pairs.length;
+  return arrayOf(entry.columns[name].values).subarray(a * count, (a + 1) * count);
+}
+
+function meanOf(values) {
+  let sum = 0;
+  let count = 0;
+  for (const value of values) if (Number.isFinite(value)) { sum += value; count += 1; }
+  return count ? sum / count : null;
+}
+
+function medianOf(values) {
+  const known = Array.from(values).filter(Number.isFinite).sort((a, b) => a - b);
+  if (!known.length) return null;
+  const middle = known.length >> 1;
+  return known.length % 2 ? known[middle] : (known[middle - 1] + known[middle]) / 2;
+}
+
+/* The mean over pairs of each combination: the score's own, where it has the criterion. */
+function meansOf(entry, name) {
+  return remember(entry, `means ${name}`, () => {
+    const scored = entry.score.means[name];
+    if (scored) return scored.map(value => (Number.isFinite(value) ? value : null));
+    return entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a)));
+  });
+}
+
+function mediansOf(entry, name) {
+  return remember(entry, `medians ${name}`, () =>
+    entry.combinations.map((_, a) => medianOf(pairValues(entry, name, a))));
+}
+
+/* Positions of all combinations, the best first, those without a rank last. */
+function ranked(entry) {
+  return remember(entry, "ranked", () => {
+    const rank = a => entry.score.rank[a] ?? Infinity;
+    return entry.combinations.map((_, a) => a).sort((a, b) => (rank(a) - rank(b)) || (a - b));
+  });
+}
+
+function isBinary(entry, a) {
+  return entry.norm[a].toUpperCase().startsWith("HAM");
+}
+
+function criterionOf(entry, name) {
+  return entry.score.criteria.find(each => each.name === name);
+}
+
+function definitionOf(entry, name) {
+  const listed = payload.method?.columns?.find(each => each.name === name);
+  return entry.columns[name]?.definition || criterionOf(entry, name)?.description
+    || listed?.definition || "";
+}
+
+/* What can be put on an axis: one value a combination. */
+function measuresOf(entry) {
+  return remember(entry, "measures", () => {
+    const score = entry.score;
+    const measures = [
+      {key: "score", label: "CUES", better: "higher", values: score.score},
+      {key: "success_rate", label: "success rate", better: "higher", values: score.success_rate},
+    ];
+    const names = [...score.criteria.map(each => each.name), ...Object.keys(entry.columns)];
+    for (const name of new Set(names)) {
+      const better = criterionOf(entry, name)?.better ?? entry.columns[name]?.better ?? null;
+      measures.push({
+        key: name, label: labelOf(name), better,
+        get values() { return meansOf(entry, name); },
+      });
+    }
+    return measures.filter(measure => measure.values.some(value => value !== null));
+  });
+}
+
+function measureOf(entry, key) {
+  return measuresOf(entry).find(measure => measure.key === key) ?? null;
+}
+
+/* The first of some columns that the entry has. */
+function firstColumn(entry, names) {
+  return names.find(name => hasColumn(entry, name)) ?? null;
+}
+
+function pairLabel(entry, position) {
+  const {sequence, image_1: first, image_2: second} = entry.pairs[position];
+  const leaf = name => String(name).split("/").pop();
+  return `${sequence ? `${sequence}: ` : ""}${leaf(first)} – ${leaf(second)}`;
+}
+
+function pairCount(entry) {
+  return counted(entry.pairs.length, "pair");
+}

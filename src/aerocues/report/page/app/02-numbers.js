@@ -1,0 +1,63 @@
+/* Numbers and names as people read them. */
+
+const NONE = "–";
+
+function isKnown(value) {
+  return value !== null && value !== undefined && Number.isFinite(value);
+}
+
+/* Three significant digits; whole numbers from 100 on, with thousands apart. */
+function shown(value, digits = 3) {
+  if (!isKnown(value)) return NONE;
+  const size = Math.abs(value);
+  if (Number.isInteger(value) || size >= 100) return Math.round(value).toLocaleString("en");
+  if (size > 0 && size < 1e-3) return value.toExponential(1);
+  return String(Number(value.toPrecision(digits)));
+}
+
+/* A score, with the same number of decimals everywhere. */
+function fixed(value, decimals = 3) {
+  return isKnown(value) ? value.toFixed(decimals) : NONE;
+}
+
+function percent(value) {
+  if (!isKnown(value)) return NONE;
+  if (value > 0 && value < 0.01) return "< 1 %";
+  if (value < 1 && value > 0.99) return "> 99 %";
+  return `${Math.round(100 * value)} %`;
+}
+
+function duration(seconds) {
+  if (!isKnown(seconds)) return NONE;
+  if (seconds < 1e-3) return `${shown(1e6 * seconds, 2)} µs`;
+  if (seconds < 1) return `${shown(1e3 * seconds)} ms`;
+  return seconds < 120 ? `${shown(seconds)} s` : `${shown(seconds / 60)} min`;
+}
+
+function counted(number, noun, plural = `${noun}s`) {
+  return `${number.toLocaleString("en")} ${number === 1 ? noun : plural}`;
+}
+
+function listed(words, last = "and") {
+  if (words.length < 2) return words.join("");
+  return `${words.slice(0, -1).join(", ")} ${last} ${words[words.length - 1]}`;
+}
+
+const LABELS = {
+  score: "CUES", f1_score: "F1 score", points_3d: "3D points",
+  f1_beyond_chance: "F1 beyond chance", homography_error: "homography error",
+};
+
+/* A column's name in words: `gt_precision@3` as "true precision at 3 px". */
+function labelOf(name) {
+  if (Object.hasOwn(LABELS, name)) return LABELS[name];
+  const [stem, threshold] = name.split("@");
+  const words = stem.replace(/^gt_/, "true ").replace(/auc$/, "AUC").replaceAll("_", " ");
+  if (!threshold) return words;
+  return `${words} at ${threshold}${stem.startsWith("pose") ? "°" : " px"}`;
+}
+
+/* Seconds are told as durations, shares and counts as numbers. */
+function valueText(name, value) {
+  return /seconds/.test(name) ? duration(value) : shown(value);
+}

@@ -1,0 +1,43 @@
+/* Colours: Okabe and Ito's, which people with any colour vision tell apart, and cividis. */
+
+const THEMES = {
+  light: {
+    ink: "#1b2430", muted: "#5b6675", grid: "#e4e8ed", line: "#9aa5b1", surface: "#ffffff",
+    series: ["#0072b2", "#d98a00", "#009e73", "#d55e00", "#5b5fc7", "#b8578f", "#3a9bd9"],
+    faint: "#c9d1da", hatch: "#a3adb8",
+  },
+  dark: {
+    ink: "#e6eaf0", muted: "#a4afbd", grid: "#2c3540", line: "#66717f", surface: "#171c23",
+    series: ["#56b4e9", "#e69f00", "#2fc79a", "#ff8a4c", "#a3a6ff", "#e59ac4", "#f0e442"],
+    faint: "#3f4a57", hatch: "#56616e",
+  },
+};
+const SYMBOLS = ["circle", "diamond", "square", "triangle-up"];
+const OUTLINES = ["circle-open", "diamond-open", "square-open", "triangle-up-open"];
+const SCALE = "Cividis";
+/* From -1 over 0 to 1: blue, the surface's own, orange. */
+const DIVERGING = {
+  light: [[0, "#0072b2"], [0.5, "#f7f7f5"], [1, "#d98a00"]],
+  dark: [[0, "#56b4e9"], [0.5, "#20262e"], [1, "#e69f00"]],
+};
+
+const darkWanted = window.matchMedia("(prefers-color-scheme: dark)");
+
+function themeName() {
+  const chosen = state.get("theme");
+  return chosen === "light" || chosen === "dark" ? chosen : (darkWanted.matches ? "dark" : "light");
+}
+
+function applyTheme() {
+  document.documentElement.dataset.theme = themeName();
+}
+
+/* Colour and symbol of the n-th of a series: 7 colours, then other symbols. */
+function seriesStyle(theme, position) {
+  const colours = THEMES[theme].series;
+  return {
+    color: colours[position % colours.length],
+    symbol: SYMBOLS[Math.floor(position / colours.length) % SYMBOLS.length],
+    outline: OUTLINES[Math.floor(position / colours.length) % OUTLINES.length],
+  };
+}

@@ -1,0 +1,157 @@
+/* Section 1: the answer, in words and a few figures, then the table of all. */
+
+addSection({
+  id: "answer",
+  title: "Answer",
+  read: "The best combination for these images by CUES, the Composite Unsupervised Efficiency Score "
+    + "(0 is the worst seen in everything, 1 the best), and how sure that is.",
+  build(body) {
+    body.append(make("div", {id: "verdict"}), make("div", {id: "all"}));
+    buildRankingTable(document.getElementById("all") ?? body.lastChild);
+  },
+  update(body, changed) {
+    const figuresOnly = [...changed].every(key => key.includes(".") || key === "theme");
+    if (!figuresOnly && [...changed].some(key => !["sort", "columns", "rows"].includes(key))) {
+      body.querySelector("#verdict").replaceChildren(...verdict(currentEntry()));
+    }
+    if (!figuresOnly) updateRankingTable(changed);
+  },
+});
+
+function verdict(entry) {
+  const score = entry.score;
+  if (!isKnown(score.best) || !isKnown(score.score[score.best])) {
+    return [make("p", {class: "lead"}, "No combination has a score: see the table and the failures below.")];
+  }
+  return [
+    make("p", {class: "lead"}, ...leadSentence(entry)),
+    make("div", {class: "cards"},
+      bestCard(entry), equalsCard(entry),
+      choiceCard(entry, "Fastest good one", score.fastest_good,
+        "the quickest of those that cannot be told from the best"),
+      choiceCard(entry, "Best with binary descriptors", score.best_binary,
+        "small descriptors, compared by Hamming distance"),
+      filteredCard(entry)),
+    make("p", {class: "facts"}, factsSentence(entry)),
+  ];
+}
+
+function leadSentence(entry) {
+  const {best, probability_best: probability, indistinguishable} = entry.score;
+  const others = indistinguishable.filter(a => a !== best).length;
+  const name = make("strong", {}, entry.combinations[best]);
+  if (entry.combinations.length === 1) {
+    return [name, " is the only combination measured, so there is nothing to compare it with."];
+  }
+  const sure = isKnown(probability?.[best])
+    ? ` It comes first in ${percent(probability[best])} of the times that the ${pairCount(entry)} are drawn anew`
+    : " How sure that is cannot be told";
+  const rest = others
+    ? `; ${counted(others, "other")} cannot be told from it.`
+    : "; every other one is significantly worse.";
+  return [name, ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`, sure, rest];
+}
+
+function factsSentence(entry) {
+  const timing = {
+    exclusive: "times were taken with a core to themselves",
+    shared: "times were taken while other measurements ran beside, so they are somewhat too long",
+    mixed: "some times were taken while other measurements ran beside",
+  }[entry.timing];
+  const parts = [
+    `${counted(entry.combinations.length, "combination")} on ${pairCount(entry)} of ${entry.dataset}`,
+    entry.machine ? `measured on ${entry.machine}` : null,
+    entry.preset ? `scored by the preset “${entry.preset}”` : null, timing,
+  ];
+  return `${parts.filter(Boolean).join("; ")}.`;
+}
+
+function card(title, name, lines, kind = "") {
+  return make("article", {class: `card ${kind}`}, make("h3", {}, title),
+    name ? make("p", {class: "name"}, name) : null, lines);
+}
+
+function figuresList(pairs) {
+  return make("dl", {}, pairs.filter(Boolean).map(([term, value]) =>
+    make("div", {}, make("dt", {}, term), make("dd", {}, value))));
+}
+
+function scoreFigures(entry, a) {
+  const score = entry.score;
+  const total = entry.medians?.total?.[a];
+  const precision = firstColumn(entry, ["precision_beyond_chance", "precision"]);
+  return [
+    ["CUES", `${fixed(score.score[a])} (${fixed(score.score_low?.[a])} to ${fixed(score.score_high?.[a])})`],
+    ["Rank", rankText(score, a)],
+    ["Succeeds on", `${percent(score.success_rate[a])} of pairs`],
+    precision ? [sentenceCase(labelOf(precision)), shown(meansOf(entry, precision)[a])] : null,
+    isKnown(total) ? ["Time, an image and a pair", duration(total)] : null,
+  ];
+}
+
+function sentenceCase(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function rankText(score, a) {
+  if (!isKnown(score.rank[a])) return NONE;
+  const low = score.rank_low?.[a];
+  const high = score.rank_high?.[a];
+  return isKnown(low) && low !== high ? `${score.rank[a]} (${low} to ${high})` : String(score.rank[a]);
+}
+
+function bestCard(entry) {
+  const best = entry.score.best;
+  return card("Best", entry.combinations[best], figuresList([
+    ...scoreFigures(entry, best),
+    isKnown(entry.score.probability_best?.[best])
+      ? ["Comes first in", `${percent(entry.score.probability_best[best])} of resamples`] : null,
+  ]), "main");
+}
+
+const EQUALS_SHOWN = 8;
+
+function equalsCard(entry) {
+  const score = entry.score;
+  const equals = score.indistinguishable.filter(a => a !== score.best)
+    .sort((a, b) => score.rank[a] - score.rank[b]);
+  if (entry.combinations.length < 2) return null;
+  if (!equals.length) {
+    const second = ranked(entry)[1];
+    return card("Runner-up", entry.combinations[second], figuresList([
+      ...scoreFigures(entry, second),
+      ["Differs from the best", isKnown(score.p_value?.[second])
+        ? `p = ${shown(score.p_value[second], 2)}` : "not tested"]]));
+  }
+  const row = a => make("li", {}, make("span", {}, entry.combinations[a]), ` ${fixed(score.score[a])}`);
+  return card("Cannot be told from it", null, [
+    make("ol", {class: "equals"}, equals.slice(0, EQUALS_SHOWN).map(row)),
+    equals.length > EQUALS_SHOWN
+      ? disclosure(`${equals.length - EQUALS_SHOWN} more`,
+        make("ol", {class: "equals", start: EQUALS_SHOWN + 1}, equals.slice(EQUALS_SHOWN).map(row)))
+      : null]);
+}
+
+function choiceCard(entry, title, a, meaning) {
+  if (!isKnown(a)) return null;
+  if (a === entry.score.best) {
+    return card(title, entry.combinations[a], make("p", {}, `The best one is this, too: ${meaning}.`));
+  }
+  return card(title, entry.combinations[a], [
+    make("p", {}, `${sentenceCase(meaning)}${timesAsFast(entry, a)}.`),
+    figuresList(scoreFigures(entry, a))]);
+}
+
+function timesAsFast(entry, a) {
+  const own = entry.medians?.total?.[a];
+  const other = entry.medians?.total?.[entry.score.best];
+  if (!own || !other || other / own < 1.05) return "";
+  return `; ${shown(other / own, 2)} times as fast as the best`;
+}
+
+function filteredCard(entry) {
+  const first = shownIn(entry)[0];
+  if (!isFiltered() || first === undefined || !isKnown(entry.score.rank[first])) return null;
+  return card("Best that passes the filter", entry.combinations[first],
+    figuresList(scoreFigures(entry, first)), "filtered");
+}

@@ -1,0 +1,92 @@
+/* Speed against quality, or any two measures, with the front of what nothing beats in both. */
+
+const SPEEDS = ["seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
+const QUALITIES = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+
+function firstMeasure(entry, keys) {
+  return keys.find(key => measureOf(entry, key)) ?? "score";
+}
+
+const PARETO = {
+  id: "pareto", title: "Speed against quality", wide: true,
+  read: "A point is a combination, by its means over the pairs. Points on the line are beaten by none in both "
+    + "measures at once; pick any two.",
+  controls: [
+    {name: "x", label: "Across", options: measureOptions,
+      fallback: entry => entry.validation?.pareto?.criteria?.[0] ?? firstMeasure(entry, SPEEDS)},
+    {name: "y", label: "Up", options: measureOptions,
+      fallback: entry => entry.validation?.pareto?.criteria?.[1] ?? firstMeasure(entry, QUALITIES)},
+    colourControl(),
+  ],
+  draw(context) {
+    const {entry, shown: rows, option, narrow, colours, theme} = context;
+    const [x, y] = [measureOf(entry, option("x")), measureOf(entry, option("y"))];
+    const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a]));
+    if (!drawn.length) return {empty: "None of these combinations has both values."};
+    const front = paretoFront(drawn, x, y);
+    const step = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
+      x: front.map(a => x.values[a]), y: front.map(a => y.values[a]), line: {color: colours.line, width: 1.5}};
+    return {
+      data: [step, ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
+      height: narrow ? 480 : 560,
+      layout: {
+        xaxis: measureAxis(x, drawn), yaxis: measureAxis(y, drawn), hovermode: "closest",
+        annotations: frontLabels(context, drawn, front, x, y),
+        legend: narrow ? {y: -0.2, yanchor: "top"} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"},
+      },
+      note: `Not beaten in both: ${front.map(a => entry.combinations[a]).join(", ")}.`,
+    };
+  },
+};
+
+/* Times and counts that reach over more than a factor of 30 are better seen on a logarithmic axis. */
+function measureAxis(measure, rows) {
+  const values = rows.map(a => measure.values[a]).filter(isKnown);
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const better = measure.better ? ` (${measure.better === "lower" ? "less" : "more"} is better)` : "";
+  const title = `${measure.label}${/seconds/.test(measure.key) && !/seconds/.test(measure.label) ? ", s" : ""}${better}`;
+  return low > 0 && high / low > 30 ? {type: "log", title, dtick: "D1", minorloglabels: "none", exponentformat: "SI"} : {title};
+}
+
+function pointsByMethod(entry, rows, code, x, y, theme) {
+  const groups = [...new Set(entry[code])];
+  return groups.map((name, i) => {
+    const members = rows.filter(a => entry[code][a] === name);
+    const {color, symbol} = seriesStyle(theme, i);
+    return {
+      type: "scatter", mode: "markers", name: safe(name), x: members.map(a => x.values[a]),
+      y: members.map(a => y.values[a]), ids: names(entry, members), marker: {color, symbol, size: 8, opacity: 0.85},
+      hovertext: members.map(a => pointText(entry, a, x, y)), hoverinfo: "text",
+    };
+  }).filter(trace => trace.x.length);
+}
+
+function pointText(entry, a, ...measures) {
+  return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
+    `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`
+    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}`;
+}
+
+function paretoFront(rows, x, y) {
+  const sign = measure => (measure.better === "lower" ? -1 : 1);
+  const good = (measure, a) => sign(measure) * measure.values[a];
+  const order = [...rows].sort((a, b) => good(x, b) - good(x, a) || good(y, b) - good(y, a));
+  let best = -Infinity;
+  return order.filter(a => {
+    if (good(y, a) <= best) return false;
+    best = good(y, a);
+    return true;
+  });
+}
+
+/* Names of a few points on the front, spread out. */
+function frontLabels({entry, narrow, colours}, drawn, front, x, y) {
+  const most = narrow ? 3 : 7;
+  const step = Math.max(1, (front.length - 1) / (most - 1));
+  const picked = [...new Set(Array.from({length: Math.min(most, front.length)}, (_, i) => front[Math.round(i * step)]))];
+  const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10(measure.values[a]) : measure.values[a]);
+  return picked.filter(a => a !== undefined).map((a, i) => ({
+    x: place(x, a), y: place(y, a), text: safe(entry.combinations[a]), showarrow: true, arrowhead: 0, arrowwidth: 1,
+    arrowcolor: colours.line, ax: x.better === "lower" ? -30 : 30, ay: i % 2 ? -34 : -16, font: {size: 10, color: colours.muted},
+  }));
+}
