@@ -123,4 +123,13 @@ def _tell(what: str) -> None:
 
 
 def _write_markdown(entries: list[ReportEntry], title: str | None, output: Path | None) -> None:
-    raise NotImplementedError
+    from aerocues.evaluation.export import write_file
+    from aerocues.report.markdown import summary
+    from aerocues.report.report import default_title
+
+    text = summary(entries, title or default_title(entries))
+    if output is None or str(output) == STANDARD_OUTPUT:
+        typer.echo(text, nl=False)
+    else:
+        write_file(output, text.encode())
+        typer.echo(output)

@@ -5,23 +5,33 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from aerocues.errors import ScoreError
 from aerocues.scoring.across import Entry, Machines, compare_datasets, compare_machines
+from aerocues.scoring.comparison import Comparison
 from aerocues.scoring.cues import rank
 
-OF_SUMMARY = ("alternative", "mean", "min", "spread", "mean_rank", "worst_rank", "rankings")
+OF_SUMMARY = ("alternative", "mean", "min", "spread", "mean_rank", "worst_rank")
 
 
-def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
-    """Rank correlations of the entries and how versatile each combination is; None for one."""
+def comparison_of(entries: Sequence[Entry]) -> Comparison | None:
+    """The rankings side by side; None for a single one, or if they share no combination."""
     if len(entries) < 2:
         return None
     try:
-        comparison = compare_datasets(entries)
+        return compare_datasets(entries)
     except ScoreError:
-        # Nothing was measured in two of them.
+        return None
+
+
+def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
+    """Rank correlations of the entries and how versatile each combination is."""
+    comparison = comparison_of(entries)
+    if comparison is None:
         return None
     ranks = rank(comparison.scores)
+    known = (~np.isnan(comparison.scores)).sum(axis=0)
     position = {name: number for number, name in enumerate(comparison.alternatives)}
     return {
         "names": comparison.names,
@@ -31,6 +41,7 @@ def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
         "versatility": [
             {
                 **{name: row[name] for name in OF_SUMMARY},
+                "rankings": known[position[row["alternative"]]],
                 "scores": comparison.scores[:, position[row["alternative"]]],
                 "ranks": ranks[:, position[row["alternative"]]],
             }
