@@ -99,6 +99,10 @@ def report(
             weights=named(weights),
             aggregation=aggregation,
         )
+        if figures is not None:
+            _write_figures(entries, figures)
+            if output is None and form is Format.HTML:
+                return
         if form is Format.MARKDOWN:
             _write_markdown(entries, title, output)
             return
@@ -120,6 +124,14 @@ def _tell(what: str) -> None:
     """Say what is being done, where somebody may be waiting."""
     if sys.stderr.isatty():
         sys.stderr.write(f"{what} ...\n")
+
+
+def _write_figures(entries: list[ReportEntry], folder: Path) -> None:
+    from aerocues.cli.console import count
+    from aerocues.report.figures import write_figures
+
+    files = write_figures(entries, folder)
+    sys.stderr.write(f"{count(len(files), 'figure file')} written to {folder}\n")
 
 
 def _write_markdown(entries: list[ReportEntry], title: str | None, output: Path | None) -> None:

@@ -1,0 +1,119 @@
+"""The key figures as vector files for a paper."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aerocues.errors import MethodUnavailableError, StoreError
+from aerocues.evaluation.export import write_file
+from aerocues.report.entry import ReportEntry
+from aerocues.report.relation_figures import draw_critical_difference, draw_pareto, draw_times
+from aerocues.report.score_figures import draw_heat_maps, draw_scores, draw_weights
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Each gives None where the data have nothing of the kind.
+FIGURES: Mapping[str, Callable[[ReportEntry], Figure | None]] = {
+    "cues": draw_scores,
+    "heat-maps": draw_heat_maps,
+    "weights": draw_weights,
+    "pareto": draw_pareto,
+    "times": draw_times,
+    "critical-difference": draw_critical_difference,
+}
+FORMS: Mapping[str, Mapping[str, Any]] = {
+    # Without the date, the same data give the same file.
+    "svg": {"metadata": {"Date": None}},
+    "pdf": {"metadata": {"CreationDate": None}},
+}
+STYLE: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.size": 8,
+    "axes.titlesize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": False,
+    "grid.color": "#d9d9d9",
+    "grid.linewidth": 0.5,
+    "hatch.linewidth": 0.4,
+    "legend.frameon": False,
+    "pdf.fonttype": 42,
+    "savefig.bbox": "tight",
+    "svg.hashsalt": "aerocues",
+    # Names of data sets are no formulas.
+    "text.parse_math": False,
+}
+ODD = re.compile(r"[^\w.]+")
+
+
+def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Path]:
+    """Draw the key figures of each entry, as SVG and PDF.
+
+    Parameters
+    ----------
+    entries : sequence of ReportEntry
+    folder : path
+        Made where it is missing; files of the same name are replaced.
+
+    Returns
+    -------
+    list of Path
+        The files: ``FIGURE.svg`` and ``FIGURE.pdf``, with the entry's name before them where
+        there are several.
+
+    Raises
+    ------
+    MethodUnavailableError
+        If matplotlib is not installed.
+    StoreError
+        If the folder cannot be written.
+    """
+    try:
+        from matplotlib import rc_context
+    except ImportError as error:
+        raise MethodUnavailableError(
+            f"figures need matplotlib ({error}); install aerocues[figures]"
+        ) from error
+    target = Path(folder)
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(
+            f"cannot make the folder {target}: {error.strerror}; give --figures another folder"
+        ) from error
+    written: list[Path] = []
+    with rc_context(STYLE):
+        for prefix, found in zip(_prefixes(entries), entries, strict=True):
+            for name, draw in FIGURES.items():
+                figure = draw(found)
+                if figure is not None:
+                    written += _write(figure, target / f"{prefix}{name}")
+    return written
+
+
+def _write(figure: Figure, place: Path) -> list[Path]:
+    files = []
+    for form, options in FORMS.items():
+        content = BytesIO()
+        figure.savefig(content, format=form, **options)
+        file = place.with_name(f"{place.name}.{form}")
+        write_file(file, content.getvalue())
+        files.append(file)
+    return files
+
+
+def _prefixes(entries: Sequence[ReportEntry]) -> list[str]:
+    """What the names of the files of each entry begin with: nothing for a single one."""
+    if len(entries) == 1:
+        return [""]
+    names = [ODD.sub("-", found.name).strip("-.") or "entry" for found in entries]
+    unique = len({name.casefold() for name in names}) == len(names)
+    return [
+        f"{name}-" if unique else f"{number}-{name}-" for number, name in enumerate(names, start=1)
+    ]
