@@ -86,7 +86,7 @@ def test_rankings_go_to_files(call: Call, finished: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--criteria", "beauty"], "no criterion 'beauty'"),
+        (["--criteria", "recal"], "did you mean recall"),
         (["--criteria", ""], "no criterion was chosen"),
         (["--criteria", "inliers,inliers"], "named twice"),
         (["--preset", "best"], "no preset of scoring 'best'"),
@@ -157,7 +157,7 @@ def test_machines_are_compared_by_their_times(call: Call, finished: Path, elsewh
     answer = call("compare", finished, elsewhere)
     assert answer.code == 0
     assert max(map(len, answer.out.splitlines())) <= 100
-    assert "versatility: best 4 of 4" in answer.out
+    assert "versatility on 1 data set: best 4 of 4" in answer.out
     assert "slow board against" in answer.out
     facts = json.loads(call("compare", finished, elsewhere, "--json").out)
     (machines,) = facts["machines"]
@@ -173,6 +173,33 @@ def test_scores_of_all_results_go_to_a_file(
     file = tmp_path / "scores.csv"
     assert call("compare", finished, elsewhere, "--csv", file, "--over", "all").code == 0
     assert pl.read_csv(file)["combination"].n_unique() == 4
+
+
+def test_files_may_be_standard_output(call: Call, finished: Path, elsewhere: Path) -> None:
+    printed = call("score", finished, "--csv", "-", "--resamples", 20).out
+    assert len(pl.read_csv(printed.encode())) == 4
+    printed = call("compare", finished, elsewhere, "--csv", "-").out
+    assert len(pl.read_csv(printed.encode())) == 4
+
+
+@pytest.mark.parametrize("command", ["score", "validate"])
+def test_tables_keep_ranks_and_names_where_it_is_narrow(
+    call: Call, finished: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setattr("aerocues.cli.console.WIDTH_OF_FILES", 80)
+    answer = call(command, finished)
+    assert answer.code == 0
+    assert max(map(len, answer.out.splitlines())) <= 80
+    assert "…" not in answer.out
+
+
+def test_json_has_no_number_that_is_none(call: Call, finished: Path) -> None:
+    def refuse(name: str) -> None:
+        raise AssertionError(name)
+
+    for command in ("score", "validate"):
+        printed = call(command, finished, "--criteria", "inliers", "--json").out
+        json.loads(printed, parse_constant=refuse)
 
 
 def test_one_result_cannot_be_compared(call: Call, finished: Path) -> None:

@@ -53,10 +53,32 @@ def test_versatility_is_mean_least_and_spread() -> None:
     b = found.row(0, named=True)
     assert (b["mean"], b["min"], b["spread"]) == pytest.approx((0.75, 0.5, 0.5))
     assert b["standard_deviation"] == pytest.approx(0.25)
-    assert (b["mean_rank"], b["worst_rank"], b["rankings"]) == (1.5, 2, 2)
-    assert (b["one"], b["two"]) == pytest.approx((0.5, 1.0))
+    assert (b["mean_rank"], b["worst_rank"], b["datasets"]) == (1.5, 2, 2)
+    assert (b["score_one"], b["score_two"]) == pytest.approx((0.5, 1.0))
+    assert (b["rank_one"], b["rank_two"]) == (2, 1)
     x = found.row(3, named=True)
-    assert (x["rankings"], x["one"]) == (1, None)
+    assert (x["datasets"], x["score_one"], x["rank_two"]) == (1, None, 2)
+
+
+def test_machines_of_one_data_set_count_as_one() -> None:
+    rankings = {
+        "desk": scored({"a": 1.0, "b": 0.25, "c": 0.0}),
+        "board": scored({"a": 1.0, "b": 0.0, "c": 0.25}),
+        "flight": scored({"a": 0.0, "b": 1.0, "c": 0.25}),
+    }
+    found = compare(rankings, datasets=("oxford", "oxford", "flight")).versatility()
+    by_name = {row["alternative"]: row for row in found.to_dicts()}
+    # b: 0.5 and 0 on oxford, 1 on the flight.
+    assert by_name["b"]["mean"] == pytest.approx((0.25 + 1) / 2)
+    assert by_name["b"]["min"] == pytest.approx(0.25)
+    assert by_name["b"]["datasets"] == 2
+    assert by_name["b"]["score_board"] == 0
+
+
+def test_data_sets_may_be_called_as_they_like() -> None:
+    one = scored({"a": 1.0, "b": 2.0, "c": 3.0})
+    found = compare({"mean": one, "alternative": one, "min": one}).versatility()
+    assert found["score_mean"].to_list() == found["score_min"].to_list()
 
 
 def test_what_cannot_be_compared_is_told() -> None:
@@ -93,12 +115,21 @@ class InFolder(Stored):
         ([InFolder("r"), InFolder("s", machine="board")], ["flight (desk)", "flight (board)"]),
         ([InFolder("r"), InFolder("s")], ["r", "s"]),
         ([InFolder("p/r"), InFolder("q/r")], ["1 flight", "2 flight"]),
+        (
+            [InFolder("r", machine=None), InFolder("s")],
+            ["flight (unknown machine)", "flight (desk)"],
+        ),
     ],
 )
 def test_results_have_the_shortest_names_that_differ(
     results: list[InFolder], names: list[str]
 ) -> None:
     assert [entry.name for entry in entries_of(results)] == names
+
+
+def test_the_same_results_twice_are_refused() -> None:
+    with pytest.raises(ScoreError, match="named twice"):
+        entries_of([InFolder("r"), InFolder("r")])
 
 
 def test_one_folder_may_hold_several_datasets() -> None:
@@ -127,3 +158,7 @@ def test_the_same_data_set_on_two_machines_is_compared_by_times() -> None:
     assert by_stage["match"]["ratio"] == pytest.approx(3)
     assert by_stage["total"]["ratio"] == pytest.approx(2)
     assert by_stage["detect"]["ratio"] == pytest.approx(1)
+    side_by_side = found.ranks()
+    assert side_by_side["first_rank"].to_list() == [1, 2, 3]
+    assert side_by_side["second_rank"].to_list() == [1, 2, 3]
+    assert side_by_side["combination"][0] == "KAZE-KAZE-L2-BF"

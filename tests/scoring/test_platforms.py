@@ -57,6 +57,12 @@ def test_imported_rows_without_stages_are_compared_by_their_total() -> None:
     assert times["ratio"].to_list() == pytest.approx([3])
 
 
+def test_pairs_of_the_same_number_but_other_images_are_not_compared() -> None:
+    other = measured(1, 1, 1).with_columns(image_2=pl.lit("9.jpg"))
+    with pytest.raises(ScoreError, match="share no row with times"):
+        compare_times(measured(1, 1, 1), other)
+
+
 def test_nothing_in_common_is_told() -> None:
     other = measured(1, 1, 1).with_columns(pair=pl.lit(7, pl.Int64))
     with pytest.raises(ScoreError, match="share no row with times"):

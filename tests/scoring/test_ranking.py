@@ -62,7 +62,7 @@ def test_five_laptops_by_four_criteria_and_three_runs() -> None:
 
 
 def test_the_frame_holds_what_was_computed() -> None:
-    ranking = rank_alternatives(random_table(0), resamples=60, seed=3, top=2)
+    ranking = rank_alternatives(random_table(0), resamples=60, seed=3, top_k=2)
     frame, scores, order = ranking.frame(), ranking.scores, ranking.scores.order
     low, high = ranking.resampled.score_interval()
     np.testing.assert_allclose(frame["score"].to_numpy(), scores.scores[order])
@@ -105,7 +105,7 @@ def test_what_has_no_score_is_named_and_left_out() -> None:
 
 def test_settings_tell_everything() -> None:
     table = table_of(random_table(0).values, blocks=[0, 1, 2, 3, 4, 4])
-    ranking = rank_alternatives(table, resamples=7, seed=2, test="wilcoxon", top=3)
+    ranking = rank_alternatives(table, resamples=7, seed=2, test="wilcoxon", top_k=3)
     assert ranking.settings() == {
         "alpha": 0.5,
         "weights": ("entropy", "variance", "critic", "pca"),
@@ -117,7 +117,7 @@ def test_settings_tell_everything() -> None:
         "resampled": "block",
         "seed": 2,
         "interval": "joint",
-        "top": 3,
+        "top_k": 3,
         "test": "wilcoxon",
     }
 

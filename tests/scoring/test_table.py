@@ -159,6 +159,21 @@ def test_fewer_criteria_and_alternatives() -> None:
     np.testing.assert_array_equal(fewer.values, table.values[[3, 0]][:, :, [0, 2]])
 
 
+@pytest.mark.parametrize("better", ["Lower", "cost", "min", ""])
+def test_a_direction_that_is_none(better: str) -> None:
+    with pytest.raises(ScoreError, match=r"criterion price: better is .* give 'higher' or 'lower'"):
+        Criterion("price", better)  # type: ignore[arg-type]
+
+
+def test_a_table_from_an_array() -> None:
+    values = np.array([[1.0, 2.0], [3.0, np.nan]])
+    table = DecisionTable.from_values(values, ["a", "b"], [Criterion("x"), Criterion("y")])
+    assert table.repeats == ("0",)
+    assert table.failed.tolist() == [[[False, False]], [[False, True]]]
+    with pytest.raises(ScoreError, match="give alternatives, repeats, criteria"):
+        DecisionTable.from_values(np.ones(3), ["a"], [Criterion("x")])
+
+
 def test_criteria_by_name_keep_their_order() -> None:
     chosen = criteria_named(["matches", " recall"])
     assert [criterion.name for criterion in chosen] == ["matches", "recall"]
@@ -167,7 +182,11 @@ def test_criteria_by_name_keep_their_order() -> None:
 
 @pytest.mark.parametrize(
     ("names", "message"),
-    [([], "name at least one"), (["recal"], "choose from"), (["recall", "recall"], "twice")],
+    [
+        ([], "name at least one"),
+        (["recal"], "did you mean recall"),
+        (["recall", "recall"], "twice"),
+    ],
 )
 def test_criteria_that_do_not_exist(names: list[str], message: str) -> None:
     with pytest.raises(ScoreError, match=message):

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
+    AggregationOption,
     AlphaOption,
     CriteriaOption,
     FailuresOption,
     PresetOption,
+    WeightsOption,
 )
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 
 LISTED = 6
+OVER = {"pairwise": "both", "all": "all"}
 
 
 class Over(StrEnum):
@@ -43,6 +45,8 @@ def compare(
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
     alpha: AlphaOption = None,
+    weights: WeightsOption = None,
+    aggregation: AggregationOption = None,
     reconstruction: Annotated[
         bool, typer.Option("--reconstruction", help="Score the 3D models, too, in all results.")
     ] = False,
@@ -52,7 +56,8 @@ def compare(
     top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 15,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     csv: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the scores of all as CSV.")
+        str | None,
+        typer.Option(metavar="FILE", help="Write scores and ranks as CSV; - is standard output."),
     ] = None,
 ) -> None:
     """Compare rankings across data sets, and times across machines."""
@@ -69,23 +74,20 @@ def compare(
             reconstruction=reconstruction,
             failures=failures.value if failures else None,
             alpha=alpha,
+            weights=named(weights),
+            aggregation=aggregation,
         )
         comparison = compare_datasets(entries, over.value)
         machines = compare_machines(entries, over.value)
     if csv is not None:
-        _write(comparison, csv)
+        frame = comparison.versatility().rename({"alternative": "combination"})
+        write_table(frame, csv, "csv", "combination")
+    if csv == STANDARD_OUTPUT:
+        return
     if as_json:
-        typer.echo(json.dumps(_facts(entries, comparison, machines), indent=2))
+        print_json(_facts(entries, comparison, machines))
     else:
-        _print(entries, comparison, machines, top)
-
-
-def _write(comparison: Comparison, target: Path) -> None:
-    from aerocues.evaluation.export import export_table
-
-    frame = comparison.versatility().rename({"alternative": "combination"})
-    export_table(frame, target, "csv")
-    sys.stderr.write(f"{len(frame):,} combinations written to {target}\n")
+        _print(entries, comparison, machines, top, reconstruction=reconstruction)
 
 
 def _facts(
@@ -108,7 +110,9 @@ def _facts(
             {
                 "first": each.first.name,
                 "second": each.second.name,
-                "spearman": matrix_facts(each.rankings.names, each.rankings.spearman()),
+                "spearman": float(each.rankings.spearman()[0, 1]),
+                "kendall": float(each.rankings.kendall()[0, 1]),
+                "ranks": each.ranks().to_dicts(),
                 "times": each.times if isinstance(each.times, str) else each.times.to_dicts(),
             }
             for each in machines
@@ -117,32 +121,46 @@ def _facts(
 
 
 def _print(
-    entries: list[Entry], comparison: Comparison, machines: list[Machines], top: int
+    entries: list[Entry],
+    comparison: Comparison,
+    machines: list[Machines],
+    top: int,
+    *,
+    reconstruction: bool,
 ) -> None:
+    import numpy as np
+
     from aerocues.cli.console import count, print_table, standard_output
     from aerocues.cli.validation_tables import numbered_matrix, print_title
 
     console = standard_output()
-    told = {
-        "pairwise": "over the combinations scored in both",
-        "all": "over the combinations scored in all",
-    }[comparison.over]
+    shared = comparison.shared()[~np.eye(len(entries), dtype=bool)]
+    number = (
+        f"{shared.min():,}"
+        if shared.min() == shared.max()
+        else f"{shared.min():,} to {shared.max():,}"
+    )
+    told = f"over the {number} combinations scored in {OVER[comparison.over]}"
     print_title(console, f"{count(len(entries), 'ranking')}, preset {entries[0].preset}")
+    if not reconstruction and any(each.reconstructed for each in entries):
+        console.print("without the criteria of the reconstruction; --reconstruction adds them")
     for name, values in (("Spearman", comparison.spearman()), ("Kendall", comparison.kendall())):
         print_title(console, f"\n{name}'s rank correlation, {told}")
         print_table(console, numbered_matrix(comparison.names, values))
     _print_versatility(console, comparison, top)
     for each in machines:
-        _print_machines(console, each)
+        _print_machines(console, each, top)
 
 
 def _print_versatility(console: Console, comparison: Comparison, top: int) -> None:
-    from aerocues.cli.console import plain_table, print_table
+    from aerocues.cli.console import count, plain_table, print_table
     from aerocues.cli.validation_tables import print_title
 
     frame = comparison.versatility()
     shown = frame.head(top)
-    print_title(console, f"\nversatility: best {len(shown)} of {len(frame)} by mean CUES")
+    over = count(len(set(comparison.datasets)), "data set")
+    best = f"best {len(shown)} of {len(frame)} by mean CUES"
+    print_title(console, f"\nversatility on {over}: {best}")
     # More do not fit; --csv and --json have them.
     listed = comparison.names if len(comparison.names) <= LISTED else ()
     numbers = [str(number + 1) for number in range(len(listed))]
@@ -155,12 +173,16 @@ def _print_versatility(console: Console, comparison: Comparison, top: int) -> No
             *(f"{row[name]:.3f}" for name in ("mean", "min", "spread")),
             f"{row['mean_rank']:.1f}",
             f"{row['worst_rank']:.0f}",
-            *("-" if row[name] is None else f"{row[name]:.3f}" for name in listed),
+            *(_score(row[f"score_{name}"]) for name in listed),
         )
     print_table(console, output)
 
 
-def _print_machines(console: Console, machines: Machines) -> None:
+def _score(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"
+
+
+def _print_machines(console: Console, machines: Machines, top: int) -> None:
     from rich.text import Text
 
     from aerocues.cli.console import print_table
@@ -171,10 +193,27 @@ def _print_machines(console: Console, machines: Machines) -> None:
     values = machines.rankings.spearman()[0, 1], machines.rankings.kendall()[0, 1]
     text = " and ".join(map(correlation_text, values))
     console.print(Text(f"rankings by CUES: Spearman and Kendall {text}"))
+    print_table(console, _side_by_side(machines, top))
     if isinstance(machines.times, str):
         console.print(Text(machines.times))
     else:
         print_table(console, _times(machines.times))
+
+
+def _side_by_side(machines: Machines, top: int) -> Any:
+    """Scores and ranks on both machines, by the rank on the first."""
+    from aerocues.cli.console import plain_table
+
+    headings = ("first: rank", "CUES", "second: rank", "CUES", "shift")
+    output = plain_table("combination", *headings, numbers=len(headings))
+    output.columns[0].no_wrap = True
+    for row in machines.ranks().head(top).iter_rows(named=True):
+        ranks = (row["first_rank"], row["second_rank"])
+        shift = "-" if None in ranks else f"{ranks[1] - ranks[0]:+d}"
+        first, second = ("-" if rank is None else f"{rank}" for rank in ranks)
+        scores = _score(row["first_score"]), _score(row["second_score"])
+        output.add_row(row["combination"], first, scores[0], second, scores[1], shift)
+    return output
 
 
 def _times(times: pl.DataFrame) -> Any:

@@ -5,16 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import count, plain_table, print_table, standard_output
+from aerocues.cli.ranking_notes import notes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.table import Table
 
     from aerocues.scoring.measured import MeasuredTable
     from aerocues.scoring.ranking import Ranking
-    from aerocues.scoring.table import DecisionTable
 
 SHOWN = 3
-NAMED = 8
+WIDE = 96
+RANK_WIDTH = 4
 # What of the criteria is shown, the first ones that were chosen; and under which heading.
 HEADINGS: dict[str, str] = {
     "precision_beyond_chance": "inlier\nratio*",
@@ -48,6 +51,7 @@ def facts(ranking: Ranking, measured: MeasuredTable) -> dict[str, Any]:
             **ranking.settings(),
         },
         "indistinguishable_from_best": ranking.indistinguishable(),
+        "untested": ranking.untested(),
         "unscored": ranking.unscored(),
     }
 
@@ -75,7 +79,7 @@ def print_best(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
     line = f"{measured.dataset}: {shown}{count(number, 'combination')} on {pairs}"
     console.print(Text(line, style="bold"))
     print_table(console, _best(ranking, measured, top))
-    for note in _notes(ranking):
+    for note in notes(ranking):
         console.print(Text(note, style="dim"))
 
 
@@ -83,25 +87,24 @@ def _best(ranking: Ranking, measured: MeasuredTable, top: int) -> Table:
     table = ranking.scores.table
     frame = ranking.frame("combination").head(top)
     timed = any(name in measured.seconds for name in frame["combination"])
-    room = SHOWN - timed
-    shown = [name for name in HEADINGS if name in table.criterion_names][:room]
-    shown = shown or list(table.criterion_names[:room])
+    shown = _shown(table.criterion_names, timed=timed)
     headings = ["\nCUES", "95 %\ninterval", "95 %\nranks", "best\nin", "\nsuccess"]
     headings += [HEADINGS.get(name, f"\n{name}") for name in shown]
     headings += ["seconds\na pair"] if timed else []
     uneven = bool((frame["repeats"] < len(table.repeats)).any())
     headings += ["\npairs"] if uneven else []
     output = plain_table("\nrank", "\ncombination", *headings, numbers=len(headings), gap=1)
-    output.columns[0].justify, output.columns[1].no_wrap = "right", True
+    output.columns[0].justify, output.columns[0].min_width = "right", RANK_WIDTH
+    output.columns[0].no_wrap = output.columns[1].no_wrap = True
     for row in frame.iter_rows(named=True):
         output.add_row(
             f"{row['rank']}",
             row["combination"],
             f"{row['score']:.3f}",
-            f"{row['score_low']:.3f}-{row['score_high']:.3f}",
+            _between(row["score_low"], row["score_high"]),
             _span(row["rank_low"], row["rank_high"]),
-            f"{100 * row['probability_best']:.0f} %",
-            f"{100 * row['success_rate']:.0f} %",
+            _percent(row["probability_best"]),
+            _percent(row["success_rate"]),
             *(_number(row[name]) for name in shown),
             *([_number(measured.seconds.get(row["combination"]))] if timed else []),
             *([f"{row['repeats']:,}"] if uneven else []),
@@ -109,56 +112,30 @@ def _best(ranking: Ranking, measured: MeasuredTable, top: int) -> Table:
     return output
 
 
+def _shown(criteria: Sequence[str], *, timed: bool) -> list[str]:
+    """Criteria for which there is room, besides the seconds."""
+    room = (SHOWN if standard_output().width >= WIDE else 1) - timed
+    known = [name for name in HEADINGS if name in criteria]
+    return (known or list(criteria))[:room]
+
+
+def _between(low: float | None, high: float | None) -> str:
+    return "-" if low is None else f"{low:.3f}-{high:.3f}"
+
+
 def _span(low: int | None, high: int | None) -> str:
     return "-" if low is None else f"{low}" if low == high else f"{low}-{high}"
+
+
+def _percent(share: float | None) -> str:
+    return "-" if share is None else f"{100 * share:.0f} %"
 
 
 def _number(value: float | None) -> str:
     if value is None:
         return "-"
-    return (
-        f"{value:,.0f}"
-        if abs(value) >= 100
-        else f"{value:.3f}"
-        if abs(value) < 10
-        else f"{value:.1f}"
-    )
-
-
-def _notes(ranking: Ranking) -> list[str]:
-    table, settings = ranking.scores.table, ranking.settings()
-    failed = (
-        "A failed pair counts as the worst"
-        if settings["failures"] == "worst"
-        else "Failed pairs are left out"
-    )
-    unit = _unit(table, settings["resampled"])
-    drawn = f"intervals from {settings['resamples']:,} resamples of {unit}"
-    lines = [f"{failed}; criteria are means over the pairs that succeeded; {drawn}."]
-    if any("beyond_chance" in name or "excess" in name for name in table.criterion_names):
-        lines.append("* beyond those that the same matches give when shuffled.")
-    alike = ranking.indistinguishable()
-    names = ", ".join(alike[:NAMED])
-    more = f" and {len(alike) - NAMED} more" if len(alike) > NAMED else ""
-    best = table.alternatives[ranking.scores.best]
-    told = f"cannot be told from {best} on these pairs: {names}{more}"
-    lines.append(told if alike else f"{best} is better than every other one (corrected p < 0.05)")
-    fewer = int((table.tried[ranking.scores.order] < len(table.repeats)).sum())
-    if fewer:
-        lines.append(f"{count(fewer, 'combination')} on fewer pairs than all: scored on their own.")
-    unscored = ranking.unscored()
-    if unscored:
-        without = f"{', '.join(unscored[:3])}{', ...' if len(unscored) > 3 else ''}"
-        lines.append(f"without a score, as they lack a criterion: {len(unscored)} ({without})")
-    return lines
-
-
-def _unit(table: DecisionTable, unit: str) -> str:
-    blocks = len(set(table.blocks.tolist()))
-    if unit == "block":
-        return f"the {blocks} sequences"
-    few = 1 < blocks < len(table.repeats)
-    return f"pairs ({blocks} sequences are too few)" if few else "pairs"
+    digits = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 3
+    return f"{value:,.{digits}f}"
 
 
 def _weights(ranking: Ranking) -> Table:

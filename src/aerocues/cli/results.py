@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.output import STANDARD_OUTPUT, write_table
+
 if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.evaluation.results import Results
 
 TOP = 5
-STANDARD_OUTPUT = "-"
 
 
 def results(
@@ -67,7 +68,7 @@ def results(
     if not asked:
         _print_table(table)
     for form, target in asked.items():
-        _write(table, target, form)
+        write_table(table, target, form)
 
 
 def _pack(found: Results, target: Path) -> None:
@@ -78,21 +79,6 @@ def _pack(found: Results, target: Path) -> None:
     file = found.pack(target)
     size = f"{file.stat().st_size / 1e3:,.0f} kB"
     sys.stderr.write(f"{count(len(found.table()), 'row')} packed into {file} ({size})\n")
-
-
-def _write(table: pl.DataFrame, target: str, form: str) -> None:
-    from aerocues.evaluation.export import export_table, table_content
-
-    if target != STANDARD_OUTPUT:
-        export_table(table, Path(target), form)
-        sys.stderr.write(f"{len(table):,} rows written to {target}\n")
-        return
-    if form == "parquet" and sys.stdout.isatty():
-        raise typer.BadParameter("Parquet is no text; name a file or redirect the output")
-    sys.stdout.buffer.write(table_content(table, form))
-    if form == "json":
-        sys.stdout.buffer.write(b"\n")
-    sys.stdout.buffer.flush()
 
 
 def _print_table(table: pl.DataFrame) -> None:

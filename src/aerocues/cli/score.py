@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from enum import StrEnum
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -63,15 +61,19 @@ def score(
     ] = Interval.JOINT,
     test: Annotated[Test, typer.Option(help="Of the difference from the best.")] = Test.BOOTSTRAP,
     top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 15,
+    top_k: Annotated[
+        int, typer.Option(min=1, metavar="K", help="Places that count for probability_top.")
+    ] = 5,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, of all.")] = False,
     csv: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the ranking of all as CSV.")
+        str | None,
+        typer.Option(metavar="FILE", help="Write the ranking of all as CSV; - is standard output."),
     ] = None,
     latex: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the best N for a paper.")
+        str | None, typer.Option(metavar="FILE", help="Write the best N for a paper.")
     ] = None,
     markdown: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the best N as Markdown.")
+        str | None, typer.Option(metavar="FILE", help="Write the best N as Markdown.")
     ] = None,
 ) -> None:
     """Rank the combinations by CUES and tell how sure the ranking is."""
@@ -100,23 +102,22 @@ def score(
             seed=seed,
             interval=interval.value,
             test=test.value,
+            top_k=top_k,
         )
-    _write(ranking, {"csv": csv, "latex": latex, "markdown": markdown}, top)
+    targets = {"csv": csv, "latex": latex, "markdown": markdown}
+    _write(ranking, targets, top)
+    if STANDARD_OUTPUT in targets.values():
+        return
     if as_json:
-        typer.echo(json.dumps(facts(ranking, measured), indent=2))
+        print_json(facts(ranking, measured))
     else:
         print_scores(ranking, measured, top)
 
 
-def _write(ranking: Ranking, targets: dict[str, Path | None], top: int) -> None:
-    from aerocues.evaluation.export import export_table
-
+def _write(ranking: Ranking, targets: dict[str, str | None], top: int) -> None:
     frame = ranking.frame("combination")
+    criteria = ranking.scores.table.criterion_names
+    printed = frame.select(*PRINTED, "success_rate", *criteria).head(top)
     for form, target in targets.items():
-        if target is None:
-            continue
-        if form != "csv":
-            criteria = ranking.scores.table.criterion_names
-            frame = frame.select(*PRINTED, "success_rate", *criteria).head(top)
-        export_table(frame, target, form)
-        sys.stderr.write(f"{len(frame):,} combinations written to {target}\n")
+        if target is not None:
+            write_table(frame if form == "csv" else printed, target, form, "combination")

@@ -26,35 +26,48 @@ ResultsArgument = Annotated[
 ]
 PresetOption = Annotated[
     str | None,
-    typer.Option("--preset", metavar="NAME", help="default or thesis; what suits the results."),
+    typer.Option(
+        "--preset", metavar="NAME", help="default or thesis; by default what suits the results."
+    ),
 ]
 CriteriaOption = Annotated[
     str | None,
-    typer.Option("--criteria", metavar="NAMES", help="Such as precision,inliers; see the guide."),
+    typer.Option(
+        "--criteria",
+        metavar="NAMES",
+        help="Such as precision,inliers; by default those of the preset.",
+    ),
 ]
 ReconstructionOption = Annotated[
     bool | None,
     typer.Option(
         "--reconstruction/--no-reconstruction",
-        help="Score the 3D models, too; if most combinations have one.",
+        help="Score the 3D models, too; by default if most combinations have one.",
         show_default=False,
     ),
 ]
 FailuresOption = Annotated[
-    Failures | None, typer.Option("--failures", help="What a failed pair counts as.")
+    Failures | None,
+    typer.Option("--failures", help="What a failed pair counts as; by default as in the preset."),
 ]
 AlphaOption = Annotated[
     float | None,
-    typer.Option("--alpha", metavar="POWER", help="Power of the normalised values; 0.5."),
+    typer.Option(
+        "--alpha", metavar="POWER", help="Power of the normalised values; by default 0.5."
+    ),
 ]
 WeightsOption = Annotated[
     str | None,
-    typer.Option("--weights", metavar="NAMES", help="Such as entropy,critic; all four."),
+    typer.Option(
+        "--weights", metavar="NAMES", help="Such as entropy,critic; by default those of the preset."
+    ),
 ]
 AggregationOption = Annotated[
     str | None,
     typer.Option(
-        "--aggregation", metavar="HOW", help="arithmetic, geometric, harmonic or trimmed."
+        "--aggregation",
+        metavar="HOW",
+        help="arithmetic (the default), geometric, harmonic or trimmed.",
     ),
 ]
 DatasetOption = Annotated[

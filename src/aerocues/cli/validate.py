@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.output import print_json
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -72,7 +72,7 @@ def validate(
         scores = score(measured.table, settings)
         found = examine(scores, speed=speed, quality=quality, shortlist=top, seed=seed)
     if as_json:
-        typer.echo(json.dumps(_facts(scores, found), indent=2))
+        print_json(_facts(scores, found))
     else:
         print_validation(scores, found, measured, top)
 
@@ -116,8 +116,9 @@ def _facts(scores: Scores, found: Validation) -> dict[str, Any]:
 
 
 def matrix_facts(names: Any, values: Any, best: Any = None) -> dict[str, Any]:
-    """A matrix as JSON has it; null where a correlation is not defined."""
-    import numpy as np
-
-    listed = [[None if np.isnan(value) else float(value) for value in row] for row in values]
-    return {"names": list(names), "correlation": listed, **({"best": list(best)} if best else {})}
+    """A matrix with its names, as plain lists."""
+    return {
+        "names": list(names),
+        "correlation": values.tolist(),
+        **({"best": list(best)} if best else {}),
+    }

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import count, plain_table, print_table, standard_output
+from aerocues.cli.ranking_table import HEADINGS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,12 +18,14 @@ if TYPE_CHECKING:
     from aerocues.scoring.measured import MeasuredTable
     from aerocues.scoring.validation import Validation
 
-CLOSE = 0.95
+WIDE = 96
 LISTED = ("detectors", "descriptors", "norms", "matchers", "detector-descriptor pairs")
 
 
 def print_validation(scores: Scores, found: Validation, measured: MeasuredTable, top: int) -> None:
     """Print all of it, section by section, each with how to read it."""
+    from aerocues.scoring.resampling import unit_of_resampling
+
     console = standard_output()
     best = scores.table.alternatives[scores.best]
     scored = count(len(scores.order), "combination")
@@ -49,7 +52,8 @@ def print_validation(scores: Scores, found: Validation, measured: MeasuredTable,
     _print_hierarchies(console, found, top)
     _print_pareto(console, scores, found)
     _print_rank_reversal(console, found)
-    _print_critical_difference(console, found.critical_difference)
+    unit = "sequence" if unit_of_resampling(scores.table) == "block" else "pair"
+    _print_critical_difference(console, found.critical_difference, unit)
 
 
 def print_title(console: Console, text: str) -> None:
@@ -68,8 +72,11 @@ def matrix_table(
     names: Sequence[str], values: NDArray[Any], best: Sequence[str] | None = None
 ) -> Table:
     """A matrix with its names on both sides, and what each ranking puts first."""
+    if standard_output().width < WIDE:
+        return numbered_matrix(names, values)
     headings = [*names, *(["the best"] if best else [])]
     output = plain_table("", *headings, numbers=len(headings))
+    output.columns[0].no_wrap = True
     if best:
         output.columns[-1].justify = "left"
     for position, name in enumerate(names):
@@ -82,6 +89,7 @@ def numbered_matrix(names: Sequence[str], values: NDArray[Any]) -> Table:
     """A matrix whose columns are numbered, where the names are too long for headings."""
     numbers = [str(number + 1) for number in range(len(names))]
     output = plain_table("", "", *numbers, numbers=len(numbers), gap=1)
+    output.columns[1].no_wrap = True
     for position, name in enumerate(names):
         cells = [f"{value:.2f}" if value == value else "-" for value in values[position]]
         output.add_row(numbers[position], name, *cells)
@@ -108,7 +116,7 @@ def _print_hierarchies(console: Console, found: Validation, top: int) -> None:
         print_title(console, f"\n{component} by mean CUES{more}")
         headings = ("mean", "max", "std", "evaluations", "the best")
         output = plain_table("", *headings, numbers=len(headings))
-        output.columns[-1].justify = "left"
+        output.columns[0].no_wrap, output.columns[-1].justify = True, "left"
         for row in shown.iter_rows(named=True):
             output.add_row(
                 row["name"],
@@ -126,12 +134,14 @@ def _print_pareto(console: Console, scores: Scores, found: Validation) -> None:
         return
     print_title(console, f"\nPareto front of {' and '.join(found.pareto_criteria)}")
     chosen = [scores.table.criterion_names.index(name) for name in found.pareto_criteria]
-    output = plain_table("", *found.pareto_criteria, "rank by CUES", numbers=3)
+    titles = [HEADINGS.get(name, name).lstrip("\n") for name in found.pareto_criteria]
+    output = plain_table("", *titles, "success", "rank", numbers=4)
+    output.columns[0].no_wrap = True
     for position in found.pareto_front:
         values = [f"{scores.means[position, column]:.3f}" for column in chosen]
-        rank = scores.ranks[position]
-        told = "-" if rank != rank else f"{rank:.0f}"
-        output.add_row(scores.table.alternatives[position], *values, told)
+        success = f"{100 * scores.table.success_rate[position]:.0f} %"
+        name = scores.table.alternatives[position]
+        output.add_row(name, *values, success, f"{scores.ranks[position]:.0f}")
     print_table(console, output)
 
 
@@ -149,7 +159,9 @@ def _print_rank_reversal(console: Console, found: Validation) -> None:
     )
 
 
-def _print_critical_difference(console: Console, found: CriticalDifference | str) -> None:
+def _print_critical_difference(
+    console: Console, found: CriticalDifference | str, unit: str
+) -> None:
     print_title(console, "\nmean ranks of the best over the pairs (Friedman, Nemenyi)")
     if isinstance(found, str):
         console.print(found)
@@ -161,7 +173,7 @@ def _print_critical_difference(console: Console, found: CriticalDifference | str
         output.add_row(name, f"{found.mean_ranks[position]:.2f}", bars)
     print_table(console, output)
     console.print(
-        f"Friedman's chi-square {found.chi_square:.1f} over {found.units} pairs or sequences, p = "
+        f"Friedman's chi-square {found.chi_square:.1f} over {found.units} {unit}s, p = "
         f"{found.p_value:.2g}; mean ranks that differ\nby less than "
         f"{found.critical_difference:.2f} (joined by a bar) cannot be told apart"
     )

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     import polars as pl
 
 
+UNKNOWN_MACHINE = "unknown machine"
+
+
 class Stored(Measured, Protocol):
     """Results that lie somewhere."""
 
@@ -39,6 +42,8 @@ class Entry:
     rows : pl.DataFrame
     scores : Scores
     preset : str
+    reconstructed : bool
+        Whether there are reconstructions of it.
     """
 
     name: str
@@ -47,6 +52,7 @@ class Entry:
     rows: pl.DataFrame
     scores: Scores
     preset: str
+    reconstructed: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,6 +72,28 @@ class Machines:
     second: Entry
     rankings: Comparison
     times: pl.DataFrame | str
+
+    def ranks(self) -> pl.DataFrame:
+        """Scores and ranks side by side, by the rank on the first machine.
+
+        Returns
+        -------
+        pl.DataFrame
+            ``combination, first_rank, first_score, second_rank, second_score``.
+        """
+        import polars as pl
+
+        ranks = self.rankings.ranks()
+        columns = {"combination": self.rankings.alternatives}
+        for side, rank, score_ in zip(
+            ("first", "second"), ranks, self.rankings.scores, strict=True
+        ):
+            columns |= {f"{side}_rank": rank, f"{side}_score": score_}
+        return (
+            pl.DataFrame(columns, nan_to_null=True)
+            .with_columns(pl.col("first_rank", "second_rank").cast(pl.Int64))
+            .sort("first_rank", "second_rank", "combination", nulls_last=True)
+        )
 
 
 @dataclass(frozen=True)
@@ -108,6 +136,10 @@ def entries_of(
     ScoreError
         If one of them cannot be scored.
     """
+    folders = [each.folder.resolve() for each in results]
+    for folder in folders:
+        if folders.count(folder) > 1:
+            raise ScoreError(f"{folder} is named twice; name each result once")
     found: list[tuple[Path, Entry]] = []
     for each in results:
         models = each.reconstructions()
@@ -116,7 +148,9 @@ def entries_of(
                 _Rows(rows, models), preset, criteria=criteria, reconstruction=reconstruction
             )
             scores = score(measured.table, settings_from(measured.preset, **changes))
-            entry = Entry(dataset, dataset, machine, rows, scores, measured.preset.name)
+            preset_name = measured.preset.name
+            known = dataset in models["dataset"]
+            entry = Entry(dataset, dataset, machine, rows, scores, preset_name, known)
             found.append((each.folder, entry))
     presets = sorted({entry.preset for _, entry in found})
     if len(presets) > 1:
@@ -130,7 +164,10 @@ def _by_dataset_and_machine(
     rows: pl.DataFrame,
 ) -> list[tuple[tuple[str, str], pl.DataFrame]]:
     groups = rows.group_by("dataset", "machine", maintain_order=True)
-    return [((str(dataset), str(machine)), group) for (dataset, machine), group in groups]
+    return [
+        ((str(dataset), str(machine or UNKNOWN_MACHINE)), group)
+        for (dataset, machine), group in groups
+    ]
 
 
 def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
@@ -149,7 +186,8 @@ def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
 
 def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Comparison:
     """Compare the rankings of all entries; see `comparison.compare`."""
-    return compare({entry.name: entry.scores for entry in entries}, over)
+    rankings = {entry.name: entry.scores for entry in entries}
+    return compare(rankings, over, [entry.dataset for entry in entries])
 
 
 def compare_machines(entries: Sequence[Entry], over: Over = "pairwise") -> list[Machines]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from aerocues.errors import ScoreError
 from aerocues.scoring.cues import Scores, rank, score_batch
 from aerocues.scoring.normalisation import Sums, normalise
-from aerocues.scoring.resampling import Unit, draws, unit_of_resampling
+from aerocues.scoring.resampling import Unit, draws, independent_units, unit_of_resampling
 
 Array = NDArray[np.float64]
 BATCH_ELEMENTS = 2_000_000
@@ -32,6 +32,9 @@ class Bootstrap:
     weights : (resamples, criteria) float64
     unit : {"block", "repeat"}
         What was drawn.
+    units : int
+        How many of them there are. A single one says nothing of how sure a score is: intervals
+        and probabilities are NaN.
     """
 
     scores: Array
@@ -39,19 +42,30 @@ class Bootstrap:
     on_one_scale: Array
     weights: Array
     unit: Unit
+    units: int
 
     def score_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
         """Lower and upper end, (alternatives,) each, of the percentile interval of the score."""
-        return _interval(self.scores, confidence)
+        low, high = _interval(self.scores, confidence)
+        return self._where_known(low), self._where_known(high)
 
     def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
         """Best and worst rank, (alternatives,) each, of the percentile interval of the rank."""
         low, high = _interval(self.ranks, confidence)
-        return np.floor(low), np.ceil(high)
+        return self._where_known(np.floor(low)), self._where_known(np.ceil(high))
 
-    def probability_in_top(self, places: int = 1) -> Array:
+    def probability_best(self) -> Array:
+        """(alternatives,) share of the resamples in which each is the best; equals share it."""
+        first = self.ranks == 1
+        share = first / np.maximum(first.sum(axis=1, keepdims=True), 1)
+        return self._where_known(share.mean(axis=0))
+
+    def probability_in_top(self, places: int) -> Array:
         """(alternatives,) share of the resamples in which each ranks among the first `places`."""
-        return np.asarray((self.ranks <= places).mean(axis=0))
+        return self._where_known((self.ranks <= places).mean(axis=0))
+
+    def _where_known(self, values: Array) -> Array:
+        return np.where(self.units > 1, values, np.nan)
 
 
 def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Bootstrap:
@@ -74,10 +88,10 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     ScoreError
         If there are fewer than 2 resamples or the seed is negative.
     """
-    if resamples < 2:
-        raise ScoreError(f"{resamples} resamples are too few; take 2 or more, such as 1000")
-    if seed < 0:
-        raise ScoreError(f"the seed is {seed}; give 0 or more")
+    if resamples != int(resamples) or resamples < 2:
+        raise ScoreError(f"{resamples} resamples cannot be drawn; take 2 or more, such as 1000")
+    if seed != int(seed) or seed < 0:
+        raise ScoreError(f"the seed is {seed}; give a whole number, 0 or more")
     table, sums = scores.table, Sums(scores.table)
     whole = sums.means(np.ones((1, len(table.repeats))))
     size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)
@@ -97,6 +111,7 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
         on_one_scale=np.concatenate(on_one_scale),
         weights=np.concatenate([batch.weights for batch in found]),
         unit=unit_of_resampling(table),
+        units=len(np.unique(independent_units(table))),
     )
 
 

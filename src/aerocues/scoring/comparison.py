@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -35,12 +35,16 @@ class Comparison:
     over : {"pairwise", "all"}
         Whether two rankings are compared over the alternatives scored in both, or over those
         scored in all rankings.
+    datasets : tuple of str
+        What each ranking is about. Several rankings of one data set (by several machines) count
+        as one, their mean, where it is asked how versatile an alternative is.
     """
 
     names: tuple[str, ...]
     alternatives: tuple[str, ...]
     scores: Array
     over: Over
+    datasets: tuple[str, ...]
 
     def _compared(self) -> Array:
         in_all = ~np.isnan(self.scores).any(axis=0)
@@ -59,39 +63,59 @@ class Comparison:
         known = (~np.isnan(self._compared())).astype(np.int64)
         return np.asarray(known @ known.T)
 
+    def ranks(self) -> Array:
+        """(rankings, alternatives) rank among all that have a score in a ranking, or NaN."""
+        return rank(self.scores)
+
     def versatility(self) -> pl.DataFrame:
-        """How good each alternative is over all rankings, the best mean first.
+        """How good each alternative is over all data sets, the best mean first.
 
         Returns
         -------
         pl.DataFrame
-            ``alternative``; ``mean, min, spread`` (largest minus smallest score) and
-            ``standard_deviation`` of its scores; ``mean_rank, worst_rank`` among all that have a
-            score in a ranking; ``rankings`` (in how many it has one); then its score in each.
-            Alternatives scored in all rankings come first.
+            ``alternative``; ``mean, min, spread`` (largest minus smallest) and
+            ``standard_deviation`` of its scores on the data sets; ``mean_rank, worst_rank`` among
+            all that have a score; ``datasets`` (on how many it has one); then ``score_NAME`` and
+            ``rank_NAME`` in each ranking. Alternatives scored on all data sets come first.
         """
         import polars as pl
 
-        known = ~np.isnan(self.scores)
-        ranks = rank(self.scores)
+        scores, ranks = self._by_dataset(self.scores), self._by_dataset(self.ranks())
+        named = {f"score_{name}": row for name, row in zip(self.names, self.scores, strict=True)}
+        named |= {f"rank_{name}": row for name, row in zip(self.names, self.ranks(), strict=True)}
         frame = pl.DataFrame(
             {
                 "alternative": self.alternatives,
-                "mean": np.nanmean(self.scores, axis=0),
-                "min": np.nanmin(self.scores, axis=0),
-                "spread": np.nanmax(self.scores, axis=0) - np.nanmin(self.scores, axis=0),
-                "standard_deviation": np.nanstd(self.scores, axis=0),
+                "mean": np.nanmean(scores, axis=0),
+                "min": np.nanmin(scores, axis=0),
+                "spread": np.nanmax(scores, axis=0) - np.nanmin(scores, axis=0),
+                "standard_deviation": np.nanstd(scores, axis=0),
                 "mean_rank": np.nanmean(ranks, axis=0),
                 "worst_rank": np.nanmax(ranks, axis=0),
-                "rankings": known.sum(axis=0),
-                **dict(zip(self.names, self.scores, strict=True)),
+                "datasets": (~np.isnan(scores)).sum(axis=0),
+                **named,
             },
             nan_to_null=True,
         )
-        return frame.sort("rankings", "mean", "alternative", descending=[True, True, False])
+        return frame.sort("datasets", "mean", "alternative", descending=[True, True, False])
+
+    def _by_dataset(self, values: Array) -> Array:
+        """(data sets, alternatives) mean over the rankings of each data set, or NaN."""
+        rows = []
+        for dataset in dict.fromkeys(self.datasets):
+            chosen = values[[each == dataset for each in self.datasets]]
+            known = ~np.isnan(chosen)
+            total, number = np.where(known, chosen, 0).sum(axis=0), known.sum(axis=0)
+            mean = np.full(values.shape[1], np.nan)
+            rows.append(np.divide(total, number, out=mean, where=number > 0))
+        return np.stack(rows)
 
 
-def compare(rankings: Mapping[str, Scores], over: Over = "pairwise") -> Comparison:
+def compare(
+    rankings: Mapping[str, Scores],
+    over: Over = "pairwise",
+    datasets: Sequence[str] | None = None,
+) -> Comparison:
     """Put rankings side by side.
 
     Parameters
@@ -100,6 +124,8 @@ def compare(rankings: Mapping[str, Scores], over: Over = "pairwise") -> Comparis
         By the name of the data set, two or more.
     over : {"pairwise", "all"}
         Which alternatives two rankings are compared over; see `Comparison`.
+    datasets : sequence of str, optional
+        What each ranking is about, where several may be about the same; its name by default.
 
     Raises
     ------
@@ -119,7 +145,13 @@ def compare(rankings: Mapping[str, Scores], over: Over = "pairwise") -> Comparis
     }
     alternatives = sorted(set().union(*scored.values()))
     table = [[each.get(name, np.nan) for name in alternatives] for each in scored.values()]
-    comparison = Comparison(tuple(scored), tuple(alternatives), np.array(table), over)
+    comparison = Comparison(
+        names=tuple(scored),
+        alternatives=tuple(alternatives),
+        scores=np.array(table),
+        over=over,
+        datasets=tuple(datasets or scored),
+    )
     shared = comparison.shared()
     np.fill_diagonal(shared, 0)
     if not shared.any():

@@ -46,7 +46,8 @@ def criteria_correlation(scores: Scores) -> Array:
     Returns
     -------
     (criteria, criteria) float64
-        Of the values as measured, costs not inverted; NaN where a criterion is constant.
+        Of the values as measured, over the repeats that succeeded, costs not inverted; NaN where
+        a criterion is constant.
     """
     return _pairwise(scores.means.T, _pearson)
 

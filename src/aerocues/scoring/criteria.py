@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Literal
 
 from aerocues.errors import ScoreError
 
 Better = Literal["higher", "lower"]
+DIRECTIONS: tuple[Better, ...] = ("higher", "lower")
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,13 @@ class Criterion:
     reconstruction : bool
         Whether it has one value an alternative, from a 3D reconstruction, not one a pair.
     description : str
+    beyond_chance : bool
+        Whether it can be had only where shuffled matches were verified, too.
+
+    Raises
+    ------
+    ScoreError
+        If it has no name, or the direction is none.
     """
 
     name: str
@@ -32,6 +41,15 @@ class Criterion:
     column: str = ""
     reconstruction: bool = False
     description: str = ""
+    beyond_chance: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise ScoreError("a criterion has no name; give it one")
+        if self.better not in DIRECTIONS:
+            raise ScoreError(
+                f"criterion {self.name}: better is {self.better!r}; give 'higher' or 'lower'"
+            )
 
     @property
     def source(self) -> str:
@@ -56,25 +74,35 @@ _BY_PAIRS: tuple[Criterion, ...] = (
         "recall_beyond_chance",
         column=_beyond_chance("keypoints_1"),
         description="excess inliers / keypoints of image 1",
+        beyond_chance=True,
     ),
-    Criterion("precision_beyond_chance", description="excess inliers / matches"),
+    Criterion(
+        "precision_beyond_chance", description="excess inliers / matches", beyond_chance=True
+    ),
     Criterion(
         "repeatability_beyond_chance",
         column=_beyond_chance("least(keypoints_1, keypoints_2)"),
         description="excess inliers / the smaller number of keypoints",
+        beyond_chance=True,
     ),
     Criterion(
         "f1_beyond_chance",
         # The harmonic mean of excess / matches and excess / keypoints_1.
         column="2 * excess_inliers / nullif(matches + keypoints_1, 0)",
         description="harmonic mean of precision and recall beyond chance",
+        beyond_chance=True,
     ),
-    Criterion("excess_inliers", description="inliers beyond those that shuffled matches give"),
+    Criterion(
+        "excess_inliers",
+        description="inliers beyond those that shuffled matches give",
+        beyond_chance=True,
+    ),
     Criterion(
         "seconds_per_1k_excess_inliers",
         "lower",
         column="1000 * total_seconds / nullif(excess_inliers, 0)",
         description="seconds for 1000 inliers beyond chance",
+        beyond_chance=True,
     ),
     Criterion("total_seconds", "lower", description="seconds for one image and one pair"),
     Criterion("seconds_per_1k_keypoints", "lower", description="seconds for 1000 keypoints"),
@@ -132,7 +160,11 @@ def criteria_named(names: Iterable[str], known: Sequence[Criterion] = CRITERIA) 
         raise ScoreError("no criterion was chosen; name at least one")
     for name in chosen:
         if name not in by_name:
-            raise ScoreError(f"there is no criterion {name!r}; choose from {', '.join(by_name)}")
+            near = get_close_matches(name, by_name, n=3, cutoff=0.4) or list(by_name)[:3]
+            raise ScoreError(
+                f"there is no criterion {name!r}; did you mean {' or '.join(near)}? The guide's "
+                "page on scoring lists all"
+            )
         if chosen.count(name) > 1:
             raise ScoreError(f"criterion {name} is named twice; name it once")
     return [by_name[name] for name in chosen]

@@ -96,7 +96,7 @@ def friedman(values: Array, names: Sequence[str], level: float = LEVEL) -> Criti
     number, units = values.shape
     if number < 2 or units < 2:
         raise ScoreError(
-            f"{number} alternatives on {units} repeats cannot be ranked against each other; take 2 "
+            f"alternatives: {number}, repeats: {units}; to rank them against each other, take 2 "
             "or more of each"
         )
     ranks = rankdata(-values, axis=0)

@@ -22,6 +22,8 @@ def read_long_form(
     block: str | None,
 ) -> dict[str, Any]:
     """The fields of a `DecisionTable`; see `DecisionTable.from_frame`."""
+    if not criteria:
+        raise ScoreError("there is no criterion; name at least one")
     if frame.is_empty():
         raise ScoreError("the table has no row; there is nothing to score")
     keys = {"alternative": alternative, "repeat": repeat, "block": block}

@@ -16,7 +16,7 @@ from aerocues.scoring.combinations import (
     suitable_preset,
 )
 from aerocues.scoring.criteria import Criterion, criteria_named
-from aerocues.scoring.ranking import TOP, Interval, Ranking, rank_alternatives
+from aerocues.scoring.ranking import TOP_K, Interval, Ranking, rank_alternatives
 from aerocues.scoring.settings import ScorePreset, ScoreSettings, preset_named
 from aerocues.scoring.table import DecisionTable
 
@@ -142,7 +142,7 @@ def _median_seconds(rows: pl.DataFrame) -> dict[str, float]:
 
 
 def _refuse_chance(criteria: Sequence[Criterion]) -> None:
-    needed = [each.name for each in criteria if "chance" in each.source or "excess" in each.source]
+    needed = [each.name for each in criteria if each.beyond_chance]
     if needed:
         raise ScoreError(
             f"no row has inliers beyond chance, which {needed[0]} needs; score with --preset "
@@ -162,7 +162,7 @@ def score(
     seed: int = 0,
     interval: Interval = "joint",
     test: str = "bootstrap",
-    top: int = TOP,
+    top_k: int = TOP_K,
 ) -> Ranking:
     """Rank the combinations of measured results by CUES.
 
@@ -182,7 +182,7 @@ def score(
         reconstructed.
     settings : ScoreSettings, optional
         In place of the preset's.
-    resamples, seed, interval, test, top
+    resamples, seed, interval, test, top_k
         See `ranking.rank_alternatives`.
 
     Raises
@@ -200,5 +200,5 @@ def score(
         seed=seed,
         interval=interval,
         test=test,
-        top=top,
+        top_k=top_k,
     )

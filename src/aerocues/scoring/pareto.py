@@ -31,7 +31,10 @@ def pareto_front(values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def pareto_of_criteria(scores: Scores, first: str, second: str) -> NDArray[np.int64]:
-    """Positions on the Pareto front of the means of two criteria, by the first, best first.
+    """Positions on the Pareto front of two criteria, by the first, best first.
+
+    It goes by the normalised values, in which failures count as the settings say: a combination
+    that is good on the few pairs it does not fail on is not on the front for that.
 
     Raises
     ------
@@ -43,6 +46,6 @@ def pareto_of_criteria(scores: Scores, first: str, second: str) -> NDArray[np.in
         if name not in names:
             raise ScoreError(f"there is no criterion {name!r} here; choose from {', '.join(names)}")
     chosen = [names.index(first), names.index(second)]
-    values = scores.means[:, chosen] * np.where(scores.table.is_cost[chosen], -1, 1)
+    values = scores.normalised[:, chosen]
     positions = np.flatnonzero(pareto_front(values))
     return positions[np.argsort(-values[positions, 0], kind="stable")]

@@ -10,7 +10,7 @@ import polars as pl
 from aerocues.errors import ScoreError
 
 METHODS = ("detector", "descriptor", "norm", "matcher")
-KEY = (*METHODS, "pair")
+KEY = (*METHODS, "pair", "image_1", "image_2")
 MEASURED = ("ok", "chance")
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Interval = Literal["joint", "pairwise"]
-TOP = 5
+TOP_K = 5
 
 INTERVALS: dict[str, Callable[[Scores, Bootstrap, int], tuple[Array, Array]]] = {
     "joint": lambda scores, resampled, seed: resampled.score_interval(),
@@ -44,7 +44,7 @@ class Ranking:
     seed : int
     interval : {"joint", "pairwise"}
         Kind of the score's interval: of resamples joint to all alternatives, or the thesis's.
-    top : int
+    top_k : int
         Places that count for ``probability_top``.
     """
 
@@ -53,7 +53,7 @@ class Ranking:
     comparisons: ComparisonsWithBest
     seed: int
     interval: Interval
-    top: int
+    top_k: int
 
     def frame(self, name: str = "alternative") -> pl.DataFrame:
         """The ranking as a table, the best first; alternatives without a score are left out.
@@ -89,8 +89,8 @@ class Ranking:
             "score": scores.scores,
             "score_low": low,
             "score_high": high,
-            "probability_best": self.resampled.probability_in_top(1),
-            "probability_top": self.resampled.probability_in_top(self.top),
+            "probability_best": self.resampled.probability_best(),
+            "probability_top": self.resampled.probability_in_top(self.top_k),
             "p_value": self.comparisons.p_value,
             "success_rate": table.success_rate,
             "repeats": table.tried,
@@ -131,6 +131,12 @@ class Ranking:
         names = self.scores.table.alternatives
         return [names[position] for position in self.scores.order if int(position) in kept]
 
+    def untested(self) -> list[str]:
+        """Alternatives with a score that share too few repeats with the best to be compared."""
+        kept = set(self.comparisons.untested().tolist())
+        names = self.scores.table.alternatives
+        return [names[position] for position in self.scores.order if int(position) in kept]
+
     def settings(self) -> dict[str, Any]:
         """Everything that was set, and what was drawn."""
         return {
@@ -141,7 +147,7 @@ class Ranking:
             "resampled": self.resampled.unit,
             "seed": self.seed,
             "interval": self.interval,
-            "top": self.top,
+            "top_k": self.top_k,
             "test": self.comparisons.test,
         }
 
@@ -154,7 +160,7 @@ def rank_alternatives(
     seed: int = 0,
     interval: Interval = "joint",
     test: str = "bootstrap",
-    top: int = TOP,
+    top_k: int = TOP_K,
 ) -> Ranking:
     """Score a table and tell how sure the ranking is.
 
@@ -169,7 +175,7 @@ def rank_alternatives(
         Interval of the score: from the joint resamples, or the thesis's.
     test : {"bootstrap", "wilcoxon"}
         Of the difference from the best; see `significance.compare_with_best`.
-    top : int
+    top_k : int
         Places that count for ``probability_top``.
 
     Raises
@@ -177,9 +183,11 @@ def rank_alternatives(
     ScoreError
         If the table cannot be scored or an argument does not exist.
     """
+    if top_k < 1:
+        raise ScoreError(f"the first {top_k} places are none; take 1 or more")
     if interval not in INTERVALS:
         raise ScoreError(f"there is no interval {interval!r}; choose from {', '.join(INTERVALS)}")
     scores = score(table, settings)
     resampled = bootstrap(scores, resamples, seed)
     comparisons = compare_with_best(scores, resampled, test)
-    return Ranking(scores, resampled, comparisons, seed, interval, top)
+    return Ranking(scores, resampled, comparisons, seed, interval, top_k)

@@ -15,6 +15,8 @@ from aerocues.scoring.per_repeat import scores_of_units
 
 Array = NDArray[np.float64]
 LEVEL = 0.05
+# Of fewer repeats in common, no test can say much.
+FEWEST_UNITS = 5
 
 
 @dataclass(frozen=True)
@@ -28,8 +30,8 @@ class ComparisonsWithBest:
     difference : (alternatives,) float64
         Score of the best minus that of each.
     p_value : (alternatives,) float64
-        Two-sided, corrected for the number of comparisons (Holm); NaN for the best itself and for
-        alternatives without a score.
+        Two-sided, corrected for the number of comparisons (Holm); NaN for the best itself, for
+        alternatives without a score and for those that share too few repeats with the best.
     test : str
     """
 
@@ -41,6 +43,12 @@ class ComparisonsWithBest:
     def indistinguishable(self, level: float = LEVEL) -> NDArray[np.int64]:
         """Positions of those that cannot be told from the best, without the best itself."""
         return np.flatnonzero(self.p_value >= level)
+
+    def untested(self) -> NDArray[np.int64]:
+        """Positions of those with a score that share too few repeats with the best."""
+        missing = np.isnan(self.p_value) & ~np.isnan(self.difference)
+        missing[self.best] = False
+        return np.flatnonzero(missing)
 
 
 def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
@@ -57,29 +65,33 @@ def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
     known = ~np.isnan(scores_of_units(scores))
     shared = (known & known[scores.best]).sum(axis=1)
     paired = resampled.on_one_scale[:, [scores.best]] - resampled.on_one_scale
-    testable = (shared > 1) & ~np.isnan(paired).all(axis=0)
-    error = np.full(len(shared), np.inf)
+    testable = (shared >= FEWEST_UNITS) & ~np.isnan(paired).all(axis=0)
+    error = np.full(len(shared), np.nan)
     # The bootstrap's variance of a mean of n is too small by (n - 1) / n.
     error[testable] = np.nanstd(paired[:, testable], axis=0) * np.sqrt(
         shared[testable] / (shared[testable] - 1)
     )
     with np.errstate(divide="ignore", invalid="ignore"):
-        statistic = np.where(difference == 0, 0, difference / error)
+        statistic = np.where(testable & (difference == 0), 0, difference / error)
     return np.asarray(2 * t.sf(statistic, np.maximum(shared - 1, 1)))
 
 
 def _by_signed_ranks(scores: Scores, _: Bootstrap) -> Array:
-    """Wilcoxon's signed-rank test on the scores of single units (blocks or repeats)."""
+    """Wilcoxon's signed-rank test on the scores of single units (blocks or repeats).
+
+    Where unit by unit the other one is the better, the best is not told from it.
+    """
     from scipy.stats import wilcoxon
 
     values = scores_of_units(scores)
     p_values = np.full(len(values), np.nan)
     for position, row in enumerate(values):
         both = ~np.isnan(row) & ~np.isnan(values[scores.best])
-        if np.isnan(scores.scores[position]):
+        if np.isnan(scores.scores[position]) or both.sum() < FEWEST_UNITS:
             continue
         paired = (values[scores.best] - row)[both]
-        p_values[position] = wilcoxon(paired).pvalue if np.any(paired) else 1.0
+        in_favour = bool(np.any(paired)) and wilcoxon(paired, alternative="greater").pvalue < 0.5
+        p_values[position] = wilcoxon(paired).pvalue if in_favour else 1.0
     return p_values
 
 

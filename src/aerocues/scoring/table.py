@@ -151,6 +151,47 @@ class DecisionTable:
         )
 
     @classmethod
+    def from_values(
+        cls,
+        values: Array,
+        alternatives: Sequence[str],
+        criteria: Sequence[Criterion],
+        repeats: Sequence[str] | None = None,
+    ) -> DecisionTable:
+        """A table from an array; every NaN in it is a failure, every repeat a block of its own.
+
+        Parameters
+        ----------
+        values : (alternatives, repeats, criteria) float64
+            Or (alternatives, criteria), where there is one repeat.
+        alternatives : sequence of str
+        criteria : sequence of Criterion
+        repeats : sequence of str, optional
+            Numbered by default.
+
+        Raises
+        ------
+        ScoreError
+            As for the class.
+        """
+        array = np.asarray(values, dtype=np.float64)
+        if array.ndim == 2:
+            array = array[:, None, :]
+        if array.ndim != 3:
+            raise ScoreError(
+                f"the values have {array.ndim} axes; give alternatives, repeats, criteria"
+            )
+        number = array.shape[1]
+        return cls(
+            alternatives=tuple(alternatives),
+            repeats=tuple(repeats if repeats is not None else map(str, range(number))),
+            criteria=tuple(criteria),
+            values=array,
+            failed=np.isnan(array),
+            blocks=np.arange(number, dtype=np.int64),
+        )
+
+    @classmethod
     def from_frame(
         cls,
         frame: pl.DataFrame,

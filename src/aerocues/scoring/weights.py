@@ -126,7 +126,7 @@ WEIGHT_METHODS: dict[str, WeightMethod] = {
             "Shannon 1948; Hwang and Yoon 1981",
             _entropy,
         ),
-        WeightMethod("variance", "population variance", "statistical variance", _variance),
+        WeightMethod("variance", "population variance", "Rao and Patel 2010", _variance),
         WeightMethod(
             "critic",
             "standard deviation x sum of (1 - r) over the other criteria",

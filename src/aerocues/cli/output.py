@@ -1,0 +1,48 @@
+"""Tables to files or standard output, facts as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    import polars as pl
+
+STANDARD_OUTPUT = "-"
+
+
+def write_table(table: pl.DataFrame, target: str, form: str, what: str = "row") -> None:
+    """Write a table to a file, or to standard output where that is called ``-``."""
+    from aerocues.cli.console import count
+    from aerocues.evaluation.export import export_table, table_content
+
+    if target != STANDARD_OUTPUT:
+        export_table(table, Path(target), form)
+        sys.stderr.write(f"{count(len(table), what)} written to {target}\n")
+        return
+    if form == "parquet" and sys.stdout.isatty():
+        raise typer.BadParameter("Parquet is no text; name a file or redirect the output")
+    sys.stdout.buffer.write(table_content(table, form))
+    if form == "json":
+        sys.stdout.buffer.write(b"\n")
+    sys.stdout.buffer.flush()
+
+
+def print_json(facts: Any) -> None:
+    """Print JSON; a number that is none or infinite is null, for JSON knows neither."""
+    typer.echo(json.dumps(_finite(facts), indent=2, allow_nan=False))
+
+
+def _finite(facts: Any) -> Any:
+    if isinstance(facts, dict):
+        return {name: _finite(value) for name, value in facts.items()}
+    if isinstance(facts, (list, tuple)):
+        return [_finite(value) for value in facts]
+    if isinstance(facts, float) and not math.isfinite(facts):
+        return None
+    return facts
