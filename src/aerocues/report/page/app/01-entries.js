@@ -45,6 +45,20 @@ function meansOf(entry, name) {
   });
 }
 
+/* The same with failed pairs as 0, for what is better when higher: to compare with the truth, a
+   combination must not gain by failing on the hard pairs. */
+function meansWithFailures(entry, name) {
+  return remember(entry, `means with failures ${name}`, () => {
+    if (entry.columns[name].better !== "higher") return meansOf(entry, name);
+    const [status, count] = [arrayOf(entry.status), entry.pairs.length];
+    const [good, unknown] = ["ok", "not measured"].map(each => entry.statuses.indexOf(each));
+    return entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a).map((value, pair) => {
+      const outcome = status[a * count + pair];
+      return outcome === unknown || (outcome === good && !Number.isFinite(value)) ? NaN : (outcome === good ? value : 0);
+    })));
+  });
+}
+
 function mediansOf(entry, name) {
   return remember(entry, `medians ${name}`, () =>
     entry.combinations.map((_, a) => medianOf(pairValues(entry, name, a))));

@@ -22,9 +22,9 @@ function fixed(value, decimals = 3) {
 
 function percent(value) {
   if (!isKnown(value)) return NONE;
-  if (value > 0 && value < 0.01) return "< 1 %";
-  if (value < 1 && value > 0.99) return "> 99 %";
-  return `${Math.round(100 * value)} %`;
+  if (value > 0 && value < 0.01) return "< 1\u00a0%";
+  if (value < 1 && value > 0.99) return "> 99\u00a0%";
+  return `${Math.round(100 * value)}\u00a0%`;
 }
 
 function duration(seconds) {
@@ -45,7 +45,8 @@ function listed(words, last = "and") {
 
 const LABELS = {
   score: "CUES", f1_score: "F1 score", points_3d: "3D points",
-  f1_beyond_chance: "F1 beyond chance", homography_error: "homography error",
+  f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "time of detecting",
+  describe_seconds: "time of describing", match_seconds: "time of matching", verify_seconds: "time of verifying",
 };
 
 /* A column's name in words: `gt_precision@3` as "true precision at 3 px". */
@@ -57,7 +58,12 @@ function labelOf(name) {
   return `${words} at ${threshold}${stem.startsWith("pose") ? "°" : " px"}`;
 }
 
-/* Seconds are told as durations, shares and counts as numbers. */
+/* Seconds as durations, shares with three decimals, counts as numbers. */
 function valueText(name, value) {
-  return /seconds/.test(name) ? duration(value) : shown(value);
+  if (/seconds/.test(name)) return duration(value);
+  return isShare(name) ? fixed(value) : shown(value);
+}
+
+function isShare(name) {
+  return /precision|recall|repeatability|^f1_|_auc@|matching_score|^score$|success_rate/.test(name);
 }

@@ -17,7 +17,7 @@ function addFigure(parent, spec) {
     type: "button", class: "quiet", "aria-label": `Save “${spec.title}” as ${format}`,
     onclick: () => saveFigure(figure, format),
   }, format);
-  const element = make("figure", {class: `figure ${spec.wide ? "wide" : ""}`, id: `figure-${spec.id}`},
+  const element = make("figure", {class: `figure ${spec.wide ? "wide" : ""} ${spec.tall ? "tall" : ""}`, id: `figure-${spec.id}`},
     make("figcaption", {},
       make("h3", {}, spec.title),
       make("p", {class: "read"}, spec.read)),
@@ -181,7 +181,7 @@ const whenNear = new IntersectionObserver(seen => {
     if (figure) figure.near = isIntersecting;
   }
   drawStale();
-}, {rootMargin: "200px 0px"});
+}, {rootMargin: "0px 0px 400px"});
 
 const onResize = new ResizeObserver(seen => {
   for (const {target} of seen) {

@@ -32,7 +32,7 @@ function buildToolbar() {
   document.getElementById("toolbar").append(
     make("div", {class: "bar"},
       buildEntryChoice(),
-      make("label", {class: "filter", for: "filter"}, make("span", {}, "Filter"), filter),
+      make("label", {class: "filter", for: "filter"}, make("span", {class: "word"}, "Filter"), filter),
       make("output", {id: "filter-count", for: "filter"}),
       clear, buildChips(), themes),
     make("p", {class: "hint", id: "filter-help"}),
@@ -47,7 +47,7 @@ function buildEntryChoice() {
   const select = make("select", {id: "entry", onchange: () =>
     state.set({entry: select.value === entries[0].name ? null : select.value})},
   entries.map(entry => make("option", {value: entry.name}, entry.name)));
-  return make("label", {class: "control", for: "entry"}, "Data set ", select);
+  return make("label", {class: "control", for: "entry"}, make("span", {class: "word"}, "Data set"), select);
 }
 
 function buildChips() {
@@ -86,8 +86,8 @@ function buildSections() {
 function goTo(id) {
   const element = document.getElementById(id);
   if (!element) return;
-  const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  element.scrollIntoView({behavior: calm ? "auto" : "smooth", block: "start"});
+  // At once: on a slow way there, figures would be drawn, grow and shift the place.
+  element.scrollIntoView({behavior: "instant", block: "start"});
   element.querySelector("h2")?.focus({preventScroll: true});
 }
 

@@ -28,7 +28,7 @@ function verdict(entry) {
     make("div", {class: "cards"},
       bestCard(entry), equalsCard(entry),
       choiceCard(entry, "Fastest good one", score.fastest_good,
-        "the quickest of those that cannot be told from the best"),
+        `the quickest with ${percent(score.settings?.good ?? 0.9)} of the best score and success rate`),
       choiceCard(entry, "Best with binary descriptors", score.best_binary,
         "small descriptors, compared by Hamming distance"),
       filteredCard(entry)),
@@ -44,12 +44,18 @@ function leadSentence(entry) {
     return [name, " is the only combination measured, so there is nothing to compare it with."];
   }
   const sure = isKnown(probability?.[best])
-    ? ` It comes first in ${percent(probability[best])} of the times that the ${pairCount(entry)} are drawn anew`
+    ? ` It comes first in ${percent(probability[best])} of ${resamples(entry)}`
     : " How sure that is cannot be told";
   const rest = others
     ? `; ${counted(others, "other")} cannot be told from it.`
     : "; every other one is significantly worse.";
   return [name, ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`, sure, rest];
+}
+
+function resamples(entry) {
+  const {resamples: number, resampled: unit} = entry.score.settings ?? {};
+  const drawn = unit && unit !== "repeat" ? `whole ${unit}s` : `the ${pairCount(entry)}`;
+  return number ? `${number.toLocaleString("en")} resamples of ${drawn}` : `the resamples of ${drawn}`;
 }
 
 function factsSentence(entry) {
@@ -105,7 +111,7 @@ function bestCard(entry) {
   return card("Best", entry.combinations[best], figuresList([
     ...scoreFigures(entry, best),
     isKnown(entry.score.probability_best?.[best])
-      ? ["Comes first in", `${percent(entry.score.probability_best[best])} of resamples`] : null,
+      ? ["First in resamples", percent(entry.score.probability_best[best])] : null,
   ]), "main");
 }
 
@@ -123,12 +129,12 @@ function equalsCard(entry) {
       ["Differs from the best", isKnown(score.p_value?.[second])
         ? `p = ${shown(score.p_value[second], 2)}` : "not tested"]]));
   }
-  const row = a => make("li", {}, make("span", {}, entry.combinations[a]), ` ${fixed(score.score[a])}`);
+  const row = a => make("li", {value: score.rank[a]}, make("span", {}, entry.combinations[a]), ` ${fixed(score.score[a])}`);
   return card("Cannot be told from it", null, [
     make("ol", {class: "equals"}, equals.slice(0, EQUALS_SHOWN).map(row)),
     equals.length > EQUALS_SHOWN
       ? disclosure(`${equals.length - EQUALS_SHOWN} more`,
-        make("ol", {class: "equals", start: EQUALS_SHOWN + 1}, equals.slice(EQUALS_SHOWN).map(row)))
+        make("ol", {class: "equals"}, equals.slice(EQUALS_SHOWN).map(row)))
       : null]);
 }
 

@@ -15,7 +15,7 @@ function scoreColumns(entry) {
     {key: "combination", label: "Combination", title: "Detector-descriptor-norm-matcher",
       usual: true, value: a => entry.combinations[a], text: a => entry.combinations[a]},
     {key: "score", label: "CUES", usual: true, title: "Score with its 95 % interval over the pairs",
-      ...of("score", fixed), cell: a => intervalCell(score, a)},
+      ...of("score", fixed), cell: (a, span) => intervalCell(score, a, span)},
     {key: "score_low", label: "CUES, low", title: "Lower end of the 95 % interval", ...of("score_low", fixed)},
     {key: "score_high", label: "CUES, high", title: "Upper end of the 95 % interval", ...of("score_high", fixed)},
     {key: "rank_low", label: "Ranks", usual: true, title: "95 % interval of the rank",
@@ -27,20 +27,21 @@ function scoreColumns(entry) {
     {key: "probability_top", label: "In top 5", title: "Share of the resamples in which it is among the best",
       ...of("probability_top", percent)},
     {key: "p_value", label: "p", usual: true, title: "Difference from the best, corrected for all comparisons; "
-      + "large: cannot be told from it", ...of("p_value", value => (value < 0.001 ? "< 0.001" : shown(value, 2)))},
+      + "large: cannot be told from it", ...of("p_value", value => (isKnown(value) && value < 0.001 ? "< 0.001" : shown(value, 2)))},
     {key: "success_rate", label: "Success", usual: true, title: "Share of the pairs that did not fail",
       ...of("success_rate", percent)},
     {key: "repeats", label: "Pairs", title: "Pairs it was measured on", ...of("repeats", shown)},
   ];
 }
 
-function intervalCell(score, a) {
+function intervalCell(score, a, [from, to]) {
   const [value, low, high] = [score.score[a], score.score_low?.[a], score.score_high?.[a]];
   if (!isKnown(value)) return NONE;
   const bar = make("span", {class: "interval", "aria-hidden": "true", title: `${fixed(low)} to ${fixed(high)}`});
-  bar.style.setProperty("--low", isKnown(low) ? low : value);
-  bar.style.setProperty("--high", isKnown(high) ? high : value);
-  bar.style.setProperty("--at", value);
+  const place = (known, otherwise) => (((isKnown(known) ? known : otherwise) - from) / (to - from)).toFixed(4);
+  bar.style.setProperty("--low", place(low, value));
+  bar.style.setProperty("--high", place(high, value));
+  bar.style.setProperty("--at", place(value, value));
   return make("span", {class: "score"}, fixed(value), bar);
 }
 
@@ -59,7 +60,7 @@ function meanColumns(entry) {
     .filter(measure => !["score", "success_rate"].includes(measure.key))
     .map(measure => ({
       key: measure.key, label: sentenceCase(measure.label), number: true, usual: usual.has(measure.key),
-      title: `Mean over the pairs: ${definitionOf(entry, measure.key)}`,
+      title: `Mean over the pairs that did not fail: ${definitionOf(entry, measure.key)}`,
       value: a => measure.values[a], text: a => valueText(measure.key, measure.values[a]),
     }));
 }

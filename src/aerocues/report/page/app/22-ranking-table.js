@@ -52,9 +52,11 @@ function updateRankingTable(changed) {
   const limit = state.get("rows") === "all" ? rows.length : Number(state.get("rows", ROWS_AT_FIRST));
   if (changed.has("entry") || changed.has("columns")) updateChooser(entry, columns);
   ranking.read.textContent = readingOfTable(entry);
+  const drawn = rows.slice(0, limit);
+  const span = scoreSpan(entry.score, drawn);
   ranking.table.replaceChildren(
     make("thead", {}, make("tr", {}, columns.map(column => headCell(column)))),
-    make("tbody", {}, rows.slice(0, limit).map(a => rankingRow(entry, columns, a))));
+    make("tbody", {}, drawn.map(a => rankingRow(entry, columns, a, span))));
   if (!rows.length) {
     ranking.table.append(make("tbody", {}, make("tr", {}, make("td", {colspan: columns.length},
       "No combination passes the filter."))));
@@ -64,8 +66,8 @@ function updateRankingTable(changed) {
 
 function readingOfTable(entry) {
   const tested = entry.score.p_value?.some(isKnown);
-  return "Click a heading to sort; the bar beside CUES is its 95 % interval on the scale from 0 to 1"
-    + `${tested ? "; rows with a dot cannot be told from the best" : ""}. Other columns are means over the pairs.`;
+  return "Click a heading to sort; the bar beside CUES is its 95\u00a0% interval, on one scale for all rows shown"
+    + `${tested ? "; rows with a dot are the best and those that cannot be told from it" : ""}. Other columns are means over the pairs that did not fail.`;
 }
 
 function headCell(column) {
@@ -88,10 +90,16 @@ function sortBy(column) {
   announce(`Sorted by ${column.label}, ${next ? "descending" : "ascending"}.`);
 }
 
-function rankingRow(entry, columns, a) {
-  const equal = entry.score.indistinguishable.includes(a);
+/* From the lowest to the highest end of the intervals that are shown. */
+function scoreSpan(score, rows) {
+  const ends = rows.flatMap(a => [score.score_low?.[a], score.score[a], score.score_high?.[a]]).filter(isKnown);
+  return ends.length ? spanOf(ends) : [0, 1];
+}
+
+function rankingRow(entry, columns, a, span) {
+  const equal = a === entry.score.best || entry.score.indistinguishable.includes(a);
   return make("tr", {class: equal ? "equal" : null}, columns.map(column => {
-    const content = column.cell?.(a) ?? column.text(a);
+    const content = column.cell?.(a, span) ?? column.text(a);
     return column.key === "combination"
       ? make("th", {scope: "row"}, content)
       : make("td", {class: column.number ? "number" : null}, content);

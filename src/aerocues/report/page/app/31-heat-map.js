@@ -6,31 +6,31 @@ const HEAT_MAP = {
     + "shown on hover); empty ones were not measured or do not pass the filter.",
   controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
   draw(context) {
-    const {entry, narrow, shown: rows, colours} = context;
+    const {entry, narrow, shown: rows} = context;
     const measure = measureOf(entry, context.option("value"));
     const panels = heatPanels(entry, rows);
     const detectors = inOrder(entry.detector, rows);
     const descriptors = inOrder(entry.descriptor, rows);
     const columns = narrow || panels.length === 1 ? 1 : 2;
     const lines = Math.ceil(panels.length / columns);
-    const cell = narrow ? 18 : 21;
-    const panelHeight = detectors.length * cell + 100;
+    const cell = narrow ? 18 : 24;
+    const panelHeight = detectors.length * cell + 84;
+    const [low, high] = boundsOf(rows.map(a => measure.values[a]).filter(isKnown));
     const drawn = panels.map((panel, i) => heatTraces(context, measure, panel, detectors, descriptors, i));
     const layout = {
       margin: {t: 8, r: narrow ? 4 : 16},
       annotations: [],
-      coloraxis: {colorscale: SCALE, reversescale: measure.better === "lower",
+      coloraxis: {colorscale: SCALE, cmin: low, cmax: high, reversescale: measure.better === "lower",
         colorbar: {orientation: "h", thickness: 10, len: narrow ? 0.9 : 0.4, x: 0.5, y: 1,
-          yanchor: "bottom", ypad: 24, outlinewidth: 0,
+          yanchor: "bottom", ypad: 26, outlinewidth: 0,
           title: {text: safe(measure.label), side: "top"}}},
     };
-    const height = lines * panelHeight + 90;
-    panels.forEach((panel, i) => placePanel(layout, panel, i, {columns, lines, detectors, descriptors, narrow}));
-    layout.margin.t = 90;
+    const height = lines * panelHeight + 80;
+    panels.forEach((panel, i) => placePanel(layout, panel, i, {columns, lines, detectors, descriptors, narrow, cell}));
+    Object.assign(layout.margin, {t: 80, b: 0});
     return {
       data: drawn.flat(), layout, height,
       summary: heatSummary(entry, rows, measure),
-      colours,
     };
   },
 };
@@ -103,13 +103,13 @@ function wrapped(text, length = 60) {
   return lines.map(line => safe(line.trim())).join("<br>");
 }
 
-function placePanel(layout, [norm, matcher], i, {columns, lines, detectors, descriptors, narrow}) {
+function placePanel(layout, [norm, matcher], i, {columns, lines, detectors, descriptors, narrow, cell}) {
   const [line, column] = [Math.floor(i / columns), i % columns];
   const gap = columns > 1 ? 0.1 : 0;
   const wide = (1 - gap * (columns - 1)) / columns;
   const tall = 1 / lines;
   const top = 1 - line * tall;
-  const bottom = top - tall * (detectors.length / (detectors.length + (narrow ? 5.5 : 4.8)));
+  const bottom = top - tall * (detectors.length * cell / (detectors.length * cell + 84));
   const suffix = i ? String(i + 1) : "";
   const left = column * (wide + gap);
   layout[`xaxis${suffix}`] = {...categoryAxis(descriptors.map(safe)), autorange: true, domain: [left, left + wide],

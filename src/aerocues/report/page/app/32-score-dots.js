@@ -1,7 +1,7 @@
 /* The best few with their intervals. */
 
 const SCORE_DOTS = {
-  id: "dots", title: "The best, with intervals",
+  id: "dots", title: "The best, with intervals", tall: true,
   read: "A dot is the score, its bar the 95 % interval over the pairs. Filled: cannot be told from the best; "
     + "hollow: significantly worse. Intervals may overlap although a difference is certain, as all share the pairs.",
   controls: [topControl()],
@@ -9,7 +9,7 @@ const SCORE_DOTS = {
     const scored = withRank(entry, rows);
     if (!scored.length) return {empty: "None of these combinations has a score."};
     const top = scored.slice(0, Number(option("top")));
-    const equal = new Set(entry.score.indistinguishable);
+    const equal = new Set([entry.score.best, ...entry.score.indistinguishable]);
     const groups = [
       ["L2, cannot be told from the best", a => equal.has(a) && !isBinary(entry, a), 0, "circle"],
       ["L2, worse", a => !equal.has(a) && !isBinary(entry, a), 0, "circle-open"],

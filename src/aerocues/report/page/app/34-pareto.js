@@ -9,7 +9,7 @@ function firstMeasure(entry, keys) {
 
 const PARETO = {
   id: "pareto", title: "Speed against quality", wide: true,
-  read: "A point is a combination, by its means over the pairs. Points on the line are beaten by none in both "
+  read: "A point is a combination, by its means over the pairs that did not fail. Points on the line are beaten by none in both "
     + "measures at once; pick any two.",
   controls: [
     {name: "x", label: "Across", options: measureOptions,
@@ -39,13 +39,19 @@ const PARETO = {
   },
 };
 
-/* Times and counts that reach over more than a factor of 30 are better seen on a logarithmic axis. */
+/* Times and counts that reach over more than a factor of 10 are better seen on a logarithmic axis. */
 function measureAxis(measure, rows) {
   const values = rows.map(a => measure.values[a]).filter(isKnown);
   const [low, high] = [Math.min(...values), Math.max(...values)];
   const better = measure.better ? ` (${measure.better === "lower" ? "less" : "more"} is better)` : "";
-  const title = `${measure.label}${/seconds/.test(measure.key) && !/seconds/.test(measure.label) ? ", s" : ""}${better}`;
-  return low > 0 && high / low > 30 ? {type: "log", title, dtick: "D1", minorloglabels: "none", exponentformat: "SI"} : {title};
+  const title = safe(`${measure.label}${better}`);
+  const timed = /seconds/.test(measure.key);
+  if (!(timed || isCount(measure.key)) || low <= 0 || high / low < 10) return {title};
+  return {title, ...logAxis(values, timed ? duration : shown)};
+}
+
+function isCount(name) {
+  return /^(inliers|excess_inliers|matches|keypoints_\d|points_3d)$/.test(name);
 }
 
 function pointsByMethod(entry, rows, code, x, y, theme) {

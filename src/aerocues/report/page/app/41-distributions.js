@@ -1,7 +1,7 @@
 /* Distribution over the pairs, a row a combination. */
 
 const DISTRIBUTIONS = {
-  id: "spread", title: "From pair to pair",
+  id: "spread", title: "From pair to pair", wide: true,
   read: "A dot is one image pair; the shape shows where most of them lie, its line the median. A wide one is "
     + "good on some pairs and poor on others. Failed pairs have no dot.",
   controls: [
@@ -19,12 +19,12 @@ const DISTRIBUTIONS = {
     const top = orderedBy(context, column, option("order")).slice(0, Number(option("top")));
     const points = pointsOfPairs(entry, column, top, option("scale") === "log");
     if (!points.x.length) return {empty: `None of these combinations has a value of ${labelOf(column)}.`};
-    const bounded = /precision|recall|repeatability|f1_|_auc|score/.test(column);
+    const bounded = isShare(column);
     return {
       data: [spreadTrace(points, option("kind"), labelOf(column), colours)],
-      height: Math.max(top.length, 2) * 34 + 60,
+      height: Math.max(top.length, 2) * 40 + 60,
       layout: {
-        xaxis: {title: axisLabel(entry, column), type: option("scale"),
+        xaxis: {title: axisLabel(entry, column), ...(option("scale") === "log" ? logAxis(points.x, value => valueText(column, value)) : {}),
           ...(bounded && option("scale") === "linear" ? {range: [-0.02, 1.02]} : {})},
         yaxis: categoryAxis(names(entry, top)), showlegend: false, violingap: 0.15, boxgap: 0.3, hovermode: "closest",
       },
@@ -35,7 +35,7 @@ const DISTRIBUTIONS = {
 
 function axisLabel(entry, column) {
   const unit = entry.columns[column]?.unit;
-  const needed = unit && !["count", "share", "1", ""].includes(unit) && !labelOf(column).includes(unit);
+  const needed = unit && !["count", "ratio", ""].includes(unit) && !labelOf(column).includes(unit);
   return safe(needed ? `${labelOf(column)}, ${unit}` : labelOf(column));
 }
 

@@ -1,11 +1,12 @@
 /* Two measures against each other: means of combinations, or the density of all pairs. */
 
-function scatterDraw(context, xName, yName, {log, band}) {
+function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
   const {entry, option, theme, narrow, shown: rows} = context;
   const each = option("points") === "pairs";
-  const [x, y] = [xName, yName].map(name => (each ? null : measureOf(entry, name)));
-  const axes = {xaxis: {title: axisLabel(entry, xName), ...(log ? logAxis() : {})},
-    yaxis: {title: axisLabel(entry, yName), ...(log ? logAxis() : {})}};
+  const [x, y] = [xName, yName].map(name => (each ? null : measure(entry, name)));
+  const axis = name => ({title: axisLabel(entry, name), ...(log ? logAxis(rows.flatMap(a =>
+    (each ? Array.from(pairValues(entry, name, a)) : [meansOf(entry, name)[a]]))) : {})});
+  const axes = {xaxis: axis(xName), yaxis: axis(yName)};
   const height = narrow ? 420 : 460;
   if (each) return densityOfPairs(context, xName, yName, log, axes, height);
   const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a])
@@ -19,10 +20,6 @@ function scatterDraw(context, xName, yName, {log, band}) {
     note: `Spearman’s correlation over ${counted(drawn.length, "combination")}: `
       + `${fixed(spearman(drawn.map(a => x.values[a]), drawn.map(a => y.values[a])), 2)}.`,
   };
-}
-
-function logAxis() {
-  return {type: "log", exponentformat: "SI", dtick: 1};
 }
 
 const BINS = 60;
@@ -39,7 +36,7 @@ function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, h
     }
   }
   if (!points.length) return {empty: "None of these combinations has both values."};
-  const bounds = [0, 1].map(axis => boundsOf(points.map(point => point[axis])));
+  const bounds = [0, 1].map(axis => spanOf(points.map(point => point[axis])));
   const counts = Array.from({length: BINS}, () => new Array(BINS).fill(0));
   for (const point of points) {
     const [i, j] = point.map((value, axis) => Math.min(BINS - 1,
@@ -59,12 +56,9 @@ function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, h
   };
 }
 
-function boundsOf(values) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of values) {
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
+/* Bounds that are never the same. */
+function spanOf(values) {
+  const [low, high] = boundsOf(values);
   return high > low ? [low, high] : [low - 0.5, high + 0.5];
 }
 

@@ -17,15 +17,16 @@ const CURVES = {
     const {entry, option, narrow, theme, shown: rows} = context;
     const column = option("column");
     const top = rows.slice(0, Number(option("top")));
-    const columns = Math.min(narrow ? 1 : 3, entry.curves.length);
+    const columns = narrow ? 1 : [1, 1, 2, 3, 2][entry.curves.length] ?? 3;
     const lines = Math.ceil(entry.curves.length / columns);
     const layout = {annotations: [], hovermode: "closest", margin: {t: 30},
       legend: {y: 1 + 40 / (lines * 230), yanchor: "bottom"}};
     const data = entry.curves.flatMap((curve, i) => {
-      placeCurve(layout, entry, curve, i, {columns, lines, column, narrow});
+      placeCurve(layout, entry, curve, i, {columns, lines});
       return top.map((a, line) => curveTrace(entry, curve, column, a, {i, line, theme, zero: option("failed") === "zero"}));
     });
-    return {data, layout, height: lines * 230 + 70 + (narrow ? 16 * top.length : 16)};
+    return {data, layout, height: lines * 230 + 50 + (narrow ? 16 * top.length : 16),
+      note: `Up: ${labelOf(column)}.`};
   },
 };
 
@@ -54,18 +55,18 @@ function curveTrace(entry, curve, column, a, {i, line, theme, zero}) {
   };
 }
 
-function placeCurve(layout, entry, curve, i, {columns, lines, column, narrow}) {
+function placeCurve(layout, entry, curve, i, {columns, lines}) {
   const [line, place] = [Math.floor(i / columns), i % columns];
   const gap = 0.06;
   const wide = (1 - gap * (columns - 1)) / columns;
   const left = place * (wide + gap);
   const top = 1 - line / lines;
-  const bottom = top - (1 / lines) * 0.68;
+  const bottom = top - (1 / lines) * 0.7;
   const suffix = i ? String(i + 1) : "";
   layout[`xaxis${suffix}`] = {domain: [left, left + wide], anchor: `y${i + 1}`, title: safe(curve.axis), nticks: 8,
-    automargin: false, title_standoff: 4, tickvals: curve.x.length <= 8 ? [...new Set(curve.x)] : undefined};
+    automargin: false, tickvals: curve.x.length <= 8 ? [...new Set(curve.x)] : undefined};
   layout[`yaxis${suffix}`] = {domain: [bottom, top], anchor: `x${i + 1}`, rangemode: "tozero", nticks: 5,
-    ...(i ? {matches: "y"} : {}), title: place === 0 && !narrow ? axisLabel(entry, column) : ""};
+    ...(i ? {matches: "y"} : {})};
   layout.annotations.push({text: `<b>${safe(curve.name)}</b>`, xref: "paper", yref: "paper", x: left, y: top,
     xanchor: "left", yanchor: "bottom", showarrow: false, font: {size: 12}});
 }

@@ -15,7 +15,7 @@ function hasTruth(entry) {
 const TRUTH = {
   id: "truth", title: "Ground truth against inliers",
   read: "Across: what can be measured without ground truth. Up: what is true. On the dotted line both say the same; "
-    + "far below it, inliers deceive.",
+    + "far below it, inliers deceive. Failed pairs count as 0 in both.",
   controls: [
     {name: "x", label: "Across", options: entry => columnOptions(entry, name => !isGroundTruth(name)),
       fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision"])},
@@ -25,8 +25,12 @@ const TRUTH = {
   ],
   available: hasTruth,
   draw: context => scatterDraw({...context, option: name => (name === "points" ? "means" : context.option(name))},
-    context.option("x"), context.option("y"), {log: false, band: sameLine}),
+    context.option("x"), context.option("y"), {log: false, band: sameLine, measure: measureWithFailures}),
 };
+
+function measureWithFailures(entry, key) {
+  return {key, label: labelOf(key), better: entry.columns[key].better, values: meansWithFailures(entry, key)};
+}
 
 /* Only where both are shares. */
 function sameLine({colours}, drawn, x, y) {
@@ -39,7 +43,7 @@ function sameLine({colours}, drawn, x, y) {
 const TRUTH_MATRIX = {
   id: "truthmatrix", title: "What tells the truth",
   read: "Spearman’s correlation over the combinations that pass the filter: near 1, a measure that needs no ground truth "
-    + "ranks as the ground truth does.",
+    + "ranks as the ground truth does. Failed pairs count as 0.",
   available: hasTruth,
   draw({entry, shown: rows, theme, narrow}) {
     const [truths, others] = [truthColumns(entry), inlierColumns(entry)];
@@ -50,7 +54,7 @@ const TRUTH_MATRIX = {
 };
 
 function correlationOfMeans(entry, rows, first, second) {
-  const [x, y] = [meansOf(entry, first), meansOf(entry, second)];
+  const [x, y] = [meansWithFailures(entry, first), meansWithFailures(entry, second)];
   const both = rows.filter(a => isKnown(x[a]) && isKnown(y[a]));
   return spearman(both.map(a => x[a]), both.map(a => y[a]));
 }

@@ -38,12 +38,5 @@ function inTimeOrder({entry, shown: rows}, order, values) {
 /* Ticks of a logarithmic axis of seconds, as durations. */
 function secondsAxis(scale, values, title = "time") {
   if (scale !== "log") return {title: `${title}, s`, rangemode: "tozero"};
-  const known = values.filter(value => isKnown(value) && value > 0);
-  const [low, high] = [Math.min(...known), Math.max(...known)].map(Math.log10);
-  const steps = high - low > 2.5 ? [1] : [1, 2, 5];
-  const ticks = [];
-  for (let power = Math.floor(low) - 1; power <= Math.ceil(high); power += 1) {
-    for (const step of steps) ticks.push(step * 10 ** power);
-  }
-  return {title, type: "log", tickvals: ticks, ticktext: ticks.map(value => safe(duration(value)))};
+  return {title, ...logAxis(values, duration)};
 }

@@ -59,7 +59,7 @@ const MATCHERS = {
     return {
       data: [line, ...data.filter(trace => trace.x.length)], height: 440,
       layout: {xaxis: axis("brute force"), yaxis: axis("FLANN"), hovermode: "closest"},
-      note: `FLANN has the lower value in ${lower} of ${pairs.length}.`,
+      note: time ? `FLANN is the faster in ${lower} of ${pairs.length}.` : `FLANN has the lower value in ${lower} of ${pairs.length}.`,
     };
   },
 };

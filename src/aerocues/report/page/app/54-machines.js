@@ -5,7 +5,7 @@ function machinesOf(entry) {
 }
 
 const MACHINES = {
-  id: "machines", title: "Between machines", wide: true, ignoresFilter: true,
+  id: "machines", title: "Between machines", ignoresFilter: true,
   read: "How many times as long the second machine takes, stage by stage: the dot is the geometric mean over the same "
     + "measurements, the bar holds 90 % of them. A rank correlation near 1 means that what is fast on one is fast on the other.",
   available: entry => (machinesOf(entry).length ? true : "This data set was measured on one machine only."),
@@ -14,7 +14,7 @@ const MACHINES = {
     const known = both.filter(each => Array.isArray(each.times));
     if (!known.length) return {empty: listed(both.map(each => each.times.unavailable), "")};
     const rows = known.flatMap((each, i) => each.times.map(time => ({...time, i,
-      label: safe(`${each.first} → ${each.second}: ${time.stage}`)})));
+      label: known.length > 1 ? safe(`${each.second}: ${time.stage}`) : safe(time.stage)})));
     const {color} = seriesStyle(theme, 0);
     const colour = seriesStyle(theme, 1).color;
     return {
@@ -27,7 +27,7 @@ const MACHINES = {
           + `<br>rank correlation ${fixed(row.rank_correlation, 2)}<br>${counted(row.rows, "measurement")}`), hoverinfo: "text"}],
       height: heightOfRows(rows.length * 1.4, 80),
       layout: {showlegend: false, hovermode: "closest", yaxis: categoryAxis([...new Set(rows.map(row => row.label))]),
-        xaxis: {title: "time on the second machine / time on the first", type: "log", tickvals: [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]}},
+        xaxis: {title: safe(known.length > 1 ? "time there / time here" : `time on ${known[0].second} / on ${known[0].first}`), type: "log", tickvals: [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]}},
       note: both.map(each => `${each.first} and ${each.second}: their rankings by CUES correlate with ${fixed(each.spearman, 3)} (Spearman).`).join(" ")
         + known.map(each => ` Rank correlation of the times: ${each.times.map(time => `${time.stage} ${fixed(time.rank_correlation, 2)}`).join(", ")}.`).join(""),
     };

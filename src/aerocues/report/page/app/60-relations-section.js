@@ -19,21 +19,29 @@ addSection({
 
 /* A matrix of correlations with its numbers in the cells. */
 function matrixFigure({x, y, z, theme, narrow, what, low = -1}) {
-  const labels = {x: x.map(safe), y: y.map(safe)};
+  const numbered = narrow && x.length > 4 && x.length === y.length;
+  const labels = numbered
+    ? {x: x.map((_, i) => `${i + 1} `), y: y.map((name, i) => `${safe(name)} ${i + 1}`)}
+    : {x: x.map(safe), y: y.map(safe)};
   const roomy = x.length <= (narrow ? 6 : 12);
-  const size = narrow ? 9 : 10.5;
+  const size = narrow || x.length > 6 ? 9 : 10.5;
   return {
     data: [{
       type: "heatmap", name: what, ...labels, z, zmin: low, zmax: 1, xgap: 1, ygap: 1, hoverongaps: false,
       colorscale: low < 0 ? DIVERGING[theme] : SCALE,
       colorbar: {thickness: 10, outlinewidth: 0, len: 0.8, tickfont: {size: 10}},
       hovertemplate: "%{y}<br>%{x}<br>%{z:.3f}<extra></extra>",
-      ...(roomy ? {texttemplate: "%{text}", text: z.map(row => row.map(value => (isKnown(value) ? fixed(value, 2) : ""))), textfont: {size}} : {}),
+      ...(roomy ? {texttemplate: "%{text}", text: z.map(row => row.map(value => correlationText(value))), textfont: {size}} : {}),
     }],
-    height: Math.max(y.length, 3) * 26 + (narrow ? 190 : 150),
-    layout: {xaxis: {...categoryAxis(labels.x), autorange: true, tickangle: x.some(each => each.length > 8) ? -40 : 0, tickfont: {size: narrow ? 9 : 10.5}},
+    height: Math.max(y.length, 3) * 26 + (numbered ? 60 : 150),
+    layout: {xaxis: {...categoryAxis(labels.x), autorange: true, tickangle: !numbered && x.some(each => each.length > 8) ? -40 : 0, tickfont: {size: narrow ? 9 : 10.5}},
       yaxis: {...categoryAxis(labels.y), tickfont: {size: narrow ? 9 : 10.5}}},
   };
+}
+
+/* As short as can be: ".92". */
+function correlationText(value) {
+  return isKnown(value) ? value.toFixed(2).replace(/^(-?)0\./, "$1.").replace("1.00", "1") : "";
 }
 
 function lowestOf(matrix) {
@@ -56,5 +64,5 @@ function reversalWords(entry) {
     ["Left out each time", percent(found.share)], ["Rounds", shown(found.rounds)],
     ["The best stays the best in", percent(found.best_kept)],
     ["Others move by", `${shown(found.mean_shift, 2)} places on average, ${shown(found.largest_shift)} at most`],
-    ["Correlation with the whole", `${fixed(found.spearman_mean)} on average, ${fixed(found.spearman_lowest)} at least`]])];
+    ["Correlation with the whole", `${fixed(found.spearman_mean, 4)} on average, ${fixed(found.spearman_lowest, 4)} at least`]])];
 }

@@ -47,7 +47,7 @@ function variantsFigure(entry, {names: variants, correlation, best}, theme, narr
   const winners = Map.groupBy ? Map.groupBy(variants, (_, i) => best?.[i]) : new Map();
   const others = [...winners].filter(([name]) => name && name !== entry.combinations[entry.score.best]);
   const note = others.length
-    ? `Another one is the best with ${others.map(([name, found]) => `${listed(found.map(variantLabel))}: ${name}`).join("; ")}.`
+    ? `Another one comes first: ${others.map(([name, found]) => `${listed(found.map(variantLabel))}: ${name}`).join("; ")}.`
     : `${entry.combinations[entry.score.best] ?? "The same one"} is the best in all of them. Lowest correlation: ${fixed(lowestOf(correlation), 2)}.`;
   return {...figure, note};
 }

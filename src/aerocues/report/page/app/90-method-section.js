@@ -8,7 +8,7 @@ addSection({
     body.append(make("div", {id: "method-entry"}), make("div", {id: "method-words"}, ...methodWords()));
   },
   update(body, changed) {
-    if (changed.has("entry")) body.querySelector("#method-entry").replaceChildren(...methodOfEntry(currentEntry()));
+    if (changed.has("entry")) body.querySelector("#method-entry").replaceChildren(...methodOfEntry(currentEntry()).filter(Boolean));
   },
 });
 
@@ -19,7 +19,7 @@ function methodOfEntry(entry) {
       block("Measured", {"data set": parts.dataset, machine: parts.machine ?? entry.machine, times: entry.timing,
         imported: parts.imported}),
       block("Settings", {preset: parts.preset, protocol: parts.protocol, ...parts.settings}),
-      block("Scored", {preset: entry.preset, ...entry.score.settings}),
+      block("Scored", {preset: entry.preset, ...entry.score.settings, criteria: (entry.score.settings?.criteria ?? []).map(labelOf)}),
       block("Versions", parts.versions)),
     outcomes(entry), failures(entry), excluded(entry)];
 }
@@ -42,7 +42,7 @@ function nested(value) {
   }
   if (value && typeof value === "object") {
     return make("dl", {class: "nested"}, Object.entries(value).filter(([, each]) => !isNothing(each)).map(([name, each]) =>
-      make("div", {}, make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, nested(each)))));
+      make("div", {}, make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, name === "memory_bytes" ? `${shown(each / 1e9)} GB` : nested(each)))));
   }
   return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
 }
@@ -52,21 +52,14 @@ function outcomes(entry) {
   const total = rows.reduce((sum, [, count]) => sum + count, 0);
   return plainTable("How the measurements ended", [
     {label: "Status", text: ([status]) => status},
-    {label: "Meaning", text: ([status]) => payload.method?.statuses?.[status] ?? STATUS_MEANINGS[status] ?? ""},
+    {label: "Meaning", text: ([status]) => meaningOf(status)},
     {label: "Rows", number: true, text: ([, count]) => count.toLocaleString("en")},
     {label: "Share", number: true, text: ([, count]) => percent(count / total)}], rows);
 }
 
-const STATUS_MEANINGS = {
-  ok: "a model was found and, where asked for, it beats chance",
-  no_keypoints: "the detector found no keypoint in one of the images",
-  no_descriptors: "the descriptor kept no keypoint in one of the images",
-  too_few_matches: "fewer mutual matches than a model can be judged by",
-  no_model: "robust estimation returned no valid model",
-  chance: "the model is no better than those that shuffled matches give",
-  error: "a method raised an error", crashed: "the process died in a method",
-  timeout: "a stage used up its time limit", out_of_memory: "a stage asked for more memory than the limit",
-};
+function meaningOf(status) {
+  return (payload.method?.statuses ?? []).find(each => each.name === status)?.meaning ?? "";
+}
 
 function failures(entry) {
   if (!entry.failures?.length) return make("p", {class: "nothing"}, "Nothing failed.");
