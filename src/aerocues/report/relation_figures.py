@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.evaluation.medians import combination_medians
 from aerocues.report.entry import ReportEntry
 from aerocues.report.score_figures import COLOURS, LINE, TOP, WIDTH
+from aerocues.scoring.cues import Scores
+from aerocues.scoring.pareto import pareto_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,40 +22,56 @@ LABELLED = 12
 
 
 def draw_pareto(found: ReportEntry) -> Figure | None:
-    """Speed against quality, with the combinations that no other one beats in both."""
+    """Time against quality, with the combinations that no other one beats in both.
+
+    Times are medians over all pairs; failed pairs count for the quality as they do for the score.
+    """
     from matplotlib.figure import Figure
+    from matplotlib.ticker import StrMethodFormatter
 
     validation, scores = found.validation, found.ranking.scores
     if not validation.pareto_criteria:
         return None
-    names = scores.table.criterion_names
-    speed, quality = (scores.means[:, names.index(name)] for name in validation.pareto_criteria)
-    front = validation.pareto_front
+    criterion, seconds = validation.pareto_criteria[1], found.seconds()
+    quality = _counted(scores, criterion)
+    speed = np.array([seconds.get(name, np.nan) for name in found.combinations])
+    if np.isnan(speed).all():
+        return None
+    front = np.flatnonzero(pareto_front(np.column_stack([-speed, quality])))
+    front = front[np.argsort(speed[front], kind="stable")]
     figure = Figure(figsize=(WIDTH, 4.4))
     axes = figure.subplots()
-    axes.plot(speed, quality, "o", ms=2.5, color="#9a9a9a", label="combinations")
+    axes.plot(speed, quality, "o", ms=2.5, color="#8a8a8a", label="combinations")
     axes.step(speed[front], quality[front], where="post", color=COLOURS[5], lw=1)
     axes.plot(speed[front], quality[front], "D", ms=4, color=COLOURS[5], label="Pareto front")
     if np.nanmin(speed) > 0:
         axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     for number, position in enumerate(front[:LABELLED], start=1):
         place = (speed[position], quality[position])
-        axes.annotate(str(number), place, xytext=(4, -9), textcoords="offset points", fontsize=7)
+        beside = (3, -9) if number % 2 else (-7, 4)
+        axes.annotate(str(number), place, xytext=beside, textcoords="offset points", fontsize=7)
     listed = "\n".join(
         f"{number}  {found.combinations[position]}"
         for number, position in enumerate(front[:LABELLED], start=1)
     )
     axes.text(1.02, 1.0, listed, transform=axes.transAxes, va="top", fontsize=7, linespacing=1.5)
     axes.grid()
-    axes.set_xlabel(_label(validation.pareto_criteria[0]))
-    axes.set_ylabel(_label(validation.pareto_criteria[1]))
+    counted = " (failed pairs as the worst)" if scores.settings.failures == "worst" else ""
+    axes.set_xlabel("median seconds for one image (detect, describe) and one pair (match, verify)")
+    axes.set_ylabel(criterion.replace("_", " ") + counted)
     axes.legend(loc="best")
     axes.set_title(found.name)
     return figure
 
 
-def _label(criterion: str) -> str:
-    return f"{criterion.replace('_', ' ')}, mean over the pairs"
+def _counted(scores: Scores, criterion: str) -> NDArray[np.float64]:
+    """(combinations,) means of a criterion in its unit, failures counted as for the score."""
+    column = scores.table.criterion_names.index(criterion)
+    values = scores.table.values[:, :, column]
+    low, high = np.nanmin(values), np.nanmax(values)
+    share = scores.normalised[:, column] ** (1 / scores.settings.alpha) * (high - low)
+    return np.asarray(high - share if scores.table.is_cost[column] else low + share)
 
 
 def draw_times(found: ReportEntry) -> Figure | None:
@@ -85,7 +104,9 @@ def draw_times(found: ReportEntry) -> Figure | None:
     axes.set_yticks(range(len(best)), best)
     axes.set_ylim(len(best) - 0.5, -0.5)
     axes.grid(axis="x")
-    axes.set_xlabel("median seconds for one image (detect, describe) and one pair (match, verify)")
+    axes.set_xlabel(
+        f"{found.name}: median seconds, one image (detect, describe) and one pair (match, verify)"
+    )
     axes.legend(ncols=len(STAGES), loc="lower center", bbox_to_anchor=(0.4, 1.0))
     return figure
 
@@ -103,10 +124,10 @@ def draw_critical_difference(found: ReportEntry) -> Figure | None:
     figure = Figure(figsize=(WIDTH, 1.1 + 0.22 * left + 0.25 * bars))
     axes = figure.subplots()
     low, high = float(np.floor(ranks.min())), float(np.ceil(ranks.max()))
-    high = max(high, low + 1)
+    high = max(high, low + 1, low + compared.critical_difference)
     first_label = 0.9 + bars
     axes.set_xlim(low, high)
-    axes.set_ylim(first_label + 0.75 * left, -1.1)
+    axes.set_ylim(first_label + 0.75 * left, -1.2)
     axes.spines[["left", "bottom"]].set_visible(False)
     axes.spines["top"].set_visible(True)
     axes.spines["top"].set_position(("data", 0))
@@ -117,15 +138,12 @@ def draw_critical_difference(found: ReportEntry) -> Figure | None:
     for level, (first, last) in enumerate(compared.groups):
         height = 0.45 + 0.32 * level
         axes.plot([ranks[first], ranks[last]], [height] * 2, color="black", lw=2.5)
-    axes.plot([low, low + compared.critical_difference], [-0.85] * 2, "|-", color=COLOURS[5])
-    axes.text(
-        low + compared.critical_difference,
-        -0.85,
-        f"  critical difference {compared.critical_difference:.2f} ({compared.units} units)",
-        va="center",
-        fontsize=7,
+    axes.plot([low, low + compared.critical_difference], [-0.95] * 2, "|-", color=COLOURS[5])
+    told = f"critical difference {compared.critical_difference:.2f}"
+    axes.text(low, -1.2, told, va="bottom", fontsize=7)
+    axes.set_xlabel(
+        f"{found.name}: mean rank over {compared.units} pairs or sequences", labelpad=26
     )
-    axes.set_xlabel("mean rank", labelpad=22)
     return figure
 
 

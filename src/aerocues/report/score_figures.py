@@ -117,6 +117,6 @@ def draw_weights(found: ReportEntry) -> Figure:
     axes.set_yticks(range(len(criteria)), criteria)
     axes.set_ylim(len(criteria) - 0.5, -0.5)
     axes.grid(axis="x")
-    axes.set_xlabel("weight")
+    axes.set_xlabel(f"{found.name}: weight")
     axes.legend(ncols=len(methods), loc="lower center", bbox_to_anchor=(0.4, 1.0))
     return figure
