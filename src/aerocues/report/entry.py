@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 NOT_MEASURED = "not measured"
 STAGES = ("detect", "describe", "match", "verify", "total")
 MOST_FAILURES = 60
+LONG = ("combinations", "exclusions")
 
 
 @dataclass(frozen=True)
@@ -94,13 +96,15 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
     shape = (len(found.combinations), len(pairs))
     table = found.ranking.scores.table
     measured = found.settings.get("dataset") or {}
+    # In a folder with several data sets, run.json is about the latest.
+    known = measured.get("name") == entry.dataset
     return {
         "name": entry.name,
         "dataset": entry.dataset,
         "machine": entry.machine,
         "preset": entry.preset,
         "timing": _timing(rows),
-        "geometry": measured.get("geometry"),
+        "geometry": measured.get("geometry") if known else None,
         "combinations": found.combinations,
         **method_labels(found.combinations),
         "pairs": pairs,
@@ -112,11 +116,18 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
         "validation": validation_facts(found.ranking.scores, found.validation),
         **_outcomes(rows),
         "excluded": _excluded(found.settings),
-        "run": {name: value for name, value in found.settings.items() if name not in LONG},
+        "run": _run(found.settings),
     }
 
 
-LONG = ("combinations", "exclusions")
+def _run(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """What ``run.json`` says but for long lists and the place of the images on this machine."""
+    kept = {name: value for name, value in settings.items() if name not in LONG}
+    if isinstance(kept.get("dataset"), dict):
+        kept["dataset"] = {
+            name: value for name, value in kept["dataset"].items() if name != "source"
+        }
+    return kept
 
 
 def _timing(rows: pl.DataFrame) -> str:

@@ -59,24 +59,28 @@ def _answer(found: ReportEntry) -> str:
     ranking = found.ranking
     best = ranking.frame("combination").row(0, named=True)
     table = ranking.scores.table
-    interval = f"{best['score_low']:.3f} to {best['score_high']:.3f}"
+    sure = ""
+    if best["score_low"] is not None and ranking.resampled.units > 1:
+        sure = (
+            f" (95 % interval {best['score_low']:.3f} to {best['score_high']:.3f}), first in "
+            f"{100 * best['probability_best']:.0f} % of the resamples"
+        )
     return (
         f"**`{best['combination']}`** is the best of {len(ranking.scores.order):,} combinations on "
         f"{len(table.repeats):,} image pairs of {_escaped(found.entry.dataset)}: "
-        f"CUES {best['score']:.3f} (95 % interval {interval}), first in "
-        f"{100 * best['probability_best']:.0f} % of the resamples, success on "
+        f"CUES {best['score']:.3f}{sure}, success on "
         f"{100 * best['success_rate']:.0f} % of the pairs."
     )
 
 
 def _others(found: ReportEntry) -> Iterator[str]:
     ranking, names = found.ranking, found.combinations
-    alike = ranking.indistinguishable()
+    alike, untested = ranking.indistinguishable(), ranking.untested()
     if alike:
-        more = f" and {len(alike) - NAMED:,} more" if len(alike) > NAMED else ""
-        listed = ", ".join(f"`{name}`" for name in alike[:NAMED])
-        yield f"- cannot be told from it on these pairs: {listed}{more}"
-    elif len(names) > 1:
+        yield f"- cannot be told from it on these pairs: {_listed(alike)}"
+    if untested:
+        yield f"- too few pairs to tell it from: {_listed(untested)}"
+    if len(ranking.scores.order) > 1 and not alike and not untested:
         yield "- better than every other one (corrected p < 0.05)"
     seconds = found.seconds()
     fast, binary = fastest_good(ranking, seconds), best_binary(ranking)
@@ -87,6 +91,11 @@ def _others(found: ReportEntry) -> Iterator[str]:
         )
     if binary is not None:
         yield f"- best binary descriptor: `{names[binary]}`"
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+    return ", ".join(f"`{name}`" for name in names[:NAMED]) + more
 
 
 def _table(found: ReportEntry) -> pl.DataFrame:

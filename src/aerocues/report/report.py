@@ -64,6 +64,8 @@ def report_entries(
     entries = entries_of(
         results, preset, criteria=criteria, reconstruction=reconstruction, **changes
     )
+    if not entries:
+        raise ScoreError("there are no measured rows; run 'aerocues run' first")
     found = []
     for each, entry in zip(settings, entries, strict=True):
         told(f"scoring {entry.name}")

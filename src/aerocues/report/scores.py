@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.report.columns import criterion_facts
 from aerocues.scoring.combinations import METHODS
@@ -63,14 +64,17 @@ def score_facts(ranking: Ranking, seconds: Mapping[str, float], preset: str) -> 
         },
         "settings": {"preset": preset, **ranking.settings(), "good": GOOD},
         "best": scores.best,
-        "indistinguishable": _indistinguishable(ranking),
+        "indistinguishable": _in_order(ranking, ranking.comparisons.indistinguishable()),
+        "untested": _in_order(ranking, ranking.comparisons.untested()),
+        "units": ranking.resampled.units,
         "fastest_good": fastest_good(ranking, seconds),
         "best_binary": best_binary(ranking),
     }
 
 
-def _indistinguishable(ranking: Ranking) -> list[int]:
-    kept = set(ranking.comparisons.indistinguishable().tolist())
+def _in_order(ranking: Ranking, positions: NDArray[np.int64]) -> list[int]:
+    """These positions, the best first."""
+    kept = set(positions.tolist())
     return [int(position) for position in ranking.scores.order if int(position) in kept]
 
 
