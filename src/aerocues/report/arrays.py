@@ -49,4 +49,6 @@ def _rounded(value: float) -> float | int | None:
     if not math.isfinite(value):
         return None
     rounded = float(f"{value:.{DIGITS}g}")
+    if not math.isfinite(rounded):
+        return value  # so large that rounding goes beyond the largest number
     return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e15 else rounded
