@@ -1,0 +1,41 @@
+"""The short text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aerocues import Results
+from aerocues.report.markdown import summary
+from aerocues.report.report import report_entries
+from tests.report.made_up import COMBINATIONS, folder_of, measured
+
+
+def test_the_answer_comes_first(flight: Results) -> None:
+    text = summary(report_entries([flight], resamples=50), "Mine")
+    lines = text.splitlines()
+    assert lines[0] == "# Mine"
+    assert lines[2].startswith("**`ORB-ORB-HAM-BF`** is the best of 5 combinations on 6 image")
+    assert text.count("\n| ") == len(COMBINATIONS) + 2
+    assert "resamples" in lines[-1]
+
+
+def test_several_entries_have_headings_and_a_comparison(two_machines: list[Results]) -> None:
+    text = summary(report_entries(two_machines, resamples=50), "Mine")
+    headings = [line for line in text.splitlines() if line.startswith("## ")]
+    assert headings == ["## flight (desk)", "## flight (board)", "## Across all"]
+
+
+def test_names_in_the_data_are_text(tmp_path: Path) -> None:
+    nasty = "<img src=x> [a](b) | `c`"
+    results = folder_of(measured(dataset=nasty), tmp_path)
+    text = summary(report_entries([results], resamples=50), nasty)
+    assert "<img" not in text.replace("\\<img", "")
+    assert r"\[a\](b) \| \`c\`" in text
+
+
+def test_one_pair_promises_nothing(tmp_path: Path) -> None:
+    results = folder_of(measured(pairs=1), tmp_path)
+    text = summary(report_entries([results], resamples=50), "Mine")
+    assert "interval" not in text
+    assert "better than every other" not in text
+    assert "too few pairs to tell it from" in text
