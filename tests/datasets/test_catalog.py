@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from aerocues.datasets.catalog import CATALOG, open_dataset
+from aerocues.datasets.dataset import Source
 from aerocues.errors import DatasetError
 
 
@@ -99,3 +100,31 @@ def test_sequences_may_be_one_text_with_commas() -> None:
         assert len(dataset.pairs) < 20
     with pytest.raises(DatasetError, match="no sequence is called tilt, turn; there are"):
         open_dataset("synthetic", sequences="tilt,turn")
+
+
+def test_a_dataset_tells_how_to_open_it_again(
+    image_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(image_folder.parent)
+    first = open_dataset(image_folder.name, max_width=64, limit=1)
+    assert first.source == Source(str(image_folder), max_width=64, limit=1)
+    monkeypatch.chdir(tmp_path)
+    again = open_dataset(**vars(first.source))
+    assert again.source == first.source
+    assert [pair.image_2 for pair in again.pairs] == [pair.image_2 for pair in first.pairs]
+    assert first.images[0].source.content_key() == again.images[0].source.content_key()
+
+
+def test_the_place_of_a_pairs_file_is_kept(
+    image_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = [image.name for image in open_dataset(str(image_folder)).images]
+    (tmp_path / "pairs.txt").write_text(f'"{names[0]}" "{names[-1]}"')
+    monkeypatch.chdir(tmp_path)
+    source = open_dataset(f"flight:{image_folder}", pairs="pairs.txt").source
+    assert source == Source(f"flight:{image_folder}", pairs=str(tmp_path / "pairs.txt"))
+
+
+def test_what_is_drawn_has_no_place() -> None:
+    source = open_dataset("synthetic", sequences=["scale", "rot*"]).source
+    assert source == Source("synthetic", sequences="scale,rot*")
