@@ -32,6 +32,29 @@ function applyTheme() {
   document.documentElement.dataset.theme = themeName();
 }
 
+/* Whether a colour is bright enough for black text: on cividis from 0 to 1, on the diverging scale from -1 to 1. */
+function isBrightOnScale(share) {
+  return share > 0.47;
+}
+
+function isBrightOnDiverging(theme, value) {
+  return theme === "dark" ? Math.abs(value) > 0.55 : value > -0.7;
+}
+
+/* Numbers in the cells of a heat map: black on bright cells, white on dark ones. `texts` are rows of rows. */
+function cellTexts({x, y, z, texts, isBright, size, axes = {}}) {
+  const groups = new Map([[true, {x: [], y: [], text: []}], [false, {x: [], y: [], text: []}]]);
+  z.forEach((row, i) => row.forEach((value, j) => {
+    if (!isKnown(value)) return;
+    const group = groups.get(isBright(value));
+    group.x.push(x[j]);
+    group.y.push(y[i]);
+    group.text.push(texts[i][j]);
+  }));
+  return [...groups].map(([bright, points]) => ({type: "scatter", mode: "text", name: "not in the table", showlegend: false,
+    ...points, ...axes, hoverinfo: "skip", textfont: {size, color: bright ? "#000000" : "#ffffff"}}));
+}
+
 /* Colour and symbol of the n-th of a series: 7 colours, then other symbols. */
 function seriesStyle(theme, position) {
   const colours = THEMES[theme].series;

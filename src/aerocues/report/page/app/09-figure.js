@@ -5,7 +5,7 @@
    note} or {empty: reason}, where context = {entry, shown, width, narrow, theme, colours, option}. */
 
 const figures = [];
-const NARROW = 620;
+const NARROW = 480;
 const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
 const touched = window.matchMedia("(pointer: coarse)");
 
@@ -81,7 +81,7 @@ function showNote(figure, drawn) {
 function fullLayout({layout, height}, {width, narrow, colours}) {
   const axis = {
     gridcolor: colours.grid, linecolor: colours.line, zerolinecolor: colours.line, zeroline: false,
-    tickcolor: colours.line, automargin: true, title: {standoff: 8},
+    tickcolor: colours.line, automargin: true,
   };
   const base = {
     width, height, autosize: false, paper_bgcolor: colours.surface, plot_bgcolor: colours.surface,
@@ -107,7 +107,7 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
 
 function withAxis(axis, own) {
   const title = typeof own.title === "string" ? {text: own.title} : own.title;
-  return {...axis, ...own, title: {...axis.title, ...title}};
+  return {...axis, ...own, title};
 }
 
 /* Saved figures are in the light theme, as paper is. */

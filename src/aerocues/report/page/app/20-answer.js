@@ -44,12 +44,16 @@ function leadSentence(entry) {
     return [name, " is the only combination measured, so there is nothing to compare it with."];
   }
   const sure = isKnown(probability?.[best])
-    ? ` It comes first in ${percent(probability[best])} of ${resamples(entry)}`
+    ? ` It comes first in ${inWords(percent(probability[best]))} of ${resamples(entry)}`
     : " How sure that is cannot be told";
   const rest = others
     ? `; ${counted(others, "other")} cannot be told from it.`
     : "; every other one is significantly worse.";
   return [name, ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`, sure, rest];
+}
+
+function inWords(share) {
+  return share.replace("> ", "more than ").replace("< ", "less than ");
 }
 
 function resamples(entry) {

@@ -40,9 +40,14 @@ function sortedRows(entry) {
   const lacking = rows.filter(a => column.value(a) === null);
   const compare = column.number
     ? (a, b) => column.value(a) - column.value(b)
-    : (a, b) => String(column.value(a)).localeCompare(String(column.value(b)));
+    : (a, b) => compareTexts(String(column.value(a)), String(column.value(b)));
   known.sort((a, b) => (down ? compare(b, a) : compare(a, b)));
   return [...known, ...lacking];
+}
+
+function compareTexts(first, second) {
+  const [a, b] = [first.toLowerCase(), second.toLowerCase()];
+  return a < b ? -1 : Number(a > b);
 }
 
 function updateRankingTable(changed) {

@@ -16,18 +16,18 @@ const HEAT_MAP = {
     const cell = narrow ? 18 : 24;
     const panelHeight = detectors.length * cell + 84;
     const [low, high] = boundsOf(rows.map(a => measure.values[a]).filter(isKnown));
-    const drawn = panels.map((panel, i) => heatTraces(context, measure, panel, detectors, descriptors, i));
+    const drawn = panels.map((panel, i) => heatTraces(context, measure, panel, detectors, descriptors, i, [low, high]));
     const layout = {
       margin: {t: 8, r: narrow ? 4 : 16},
       annotations: [],
       coloraxis: {colorscale: SCALE, cmin: low, cmax: high, reversescale: measure.better === "lower",
         colorbar: {orientation: "h", thickness: 10, len: narrow ? 0.9 : 0.4, x: 0.5, y: 1,
-          yanchor: "bottom", ypad: 26, outlinewidth: 0,
+          yref: "container", yanchor: "top", ypad: 4, outlinewidth: 0,
           title: {text: safe(measure.label), side: "top"}}},
     };
-    const height = lines * panelHeight + 80;
+    const height = lines * panelHeight + 84;
     panels.forEach((panel, i) => placePanel(layout, panel, i, {columns, lines, detectors, descriptors, narrow, cell}));
-    Object.assign(layout.margin, {t: 80, b: 0});
+    Object.assign(layout.margin, {t: 84, b: 0});
     return {
       data: drawn.flat(), layout, height,
       summary: heatSummary(entry, rows, measure),
@@ -45,7 +45,7 @@ function heatPanels(entry, rows) {
   return keys.map(key => JSON.parse(key)).sort((a, b) => b[0].localeCompare(a[0]) || a[1].localeCompare(b[1]));
 }
 
-function heatTraces({entry, shown: rows, colours, width, narrow}, measure, [norm, matcher], detectors, descriptors, i) {
+function heatTraces({entry, shown: rows, colours, width, narrow}, measure, [norm, matcher], detectors, descriptors, i, [low, high]) {
   const at = new Map(rows.map(a => [entry.combinations[a], a]));
   const reasons = payload.incompatible ?? {};
   const [z, text, hover] = [[], [], []];
@@ -68,10 +68,13 @@ function heatTraces({entry, shown: rows, colours, width, narrow}, measure, [norm
   const axes = {xaxis: `x${i + 1}`, yaxis: `y${i + 1}`};
   const roomy = !narrow && width / 2 / descriptors.length > 30;
   return [
-    {type: "heatmap", name: safe(`${norm} ${matcher}`), x: descriptors.map(safe), y: detectors.map(safe), z, text,
+    {type: "heatmap", name: safe(`${norm} ${matcher}`), x: descriptors.map(safe), y: detectors.map(safe), z,
       customdata: hover, hovertemplate: "%{customdata}<extra></extra>", hoverongaps: false,
-      coloraxis: "coloraxis", xgap: 1, ygap: 1, ...axes,
-      ...(roomy ? {texttemplate: "%{text}", textfont: {size: 9}} : {})},
+      coloraxis: "coloraxis", xgap: 1, ygap: 1, ...axes},
+    ...(roomy ? cellTexts({x: descriptors.map(safe), y: detectors.map(safe), z, texts: text, size: 9, axes, isBright: value => {
+      const share = (value - low) / (high - low || 1);
+      return isBrightOnScale(measure.better === "lower" ? 1 - share : share);
+    }}) : []),
     {type: "scatter", mode: "markers", name: "not in the table", x: hatched.x, y: hatched.y, hovertext: hatched.hover,
       hoverinfo: "text", showlegend: false, ...axes,
       marker: {symbol: "line-ne-open", size: narrow ? 9 : 11, color: colours.hatch, line: {width: 1.2, color: colours.hatch}}},

@@ -19,7 +19,7 @@ const SCORE_DOTS = {
     const data = groups.map(([name, belongs, series, symbol]) =>
       dotsTrace(entry, top.filter(belongs), name, colours.series[series], symbol)).filter(trace => trace.y.length);
     return {
-      data, height: heightOfRows(top.length, 100),
+      data, height: top.length * 30 + 110,
       layout: {xaxis: {title: "CUES"}, yaxis: categoryAxis(names(entry, top)), hovermode: "closest"},
       summary: `Best: ${entry.combinations[top[0]]}, ${fixed(entry.score.score[top[0]])}`,
     };

@@ -32,7 +32,7 @@ const PARETO = {
       layout: {
         xaxis: measureAxis(x, drawn), yaxis: measureAxis(y, drawn), hovermode: "closest",
         annotations: frontLabels(context, drawn, front, x, y),
-        legend: narrow ? {y: -0.2, yanchor: "top"} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"},
+        legend: narrow ? {} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"},
       },
       note: `Not beaten in both: ${front.map(a => entry.combinations[a]).join(", ")}.`,
     };
@@ -85,13 +85,17 @@ function paretoFront(rows, x, y) {
   });
 }
 
-/* Names of a few points on the front, spread out. */
-function frontLabels({entry, narrow, colours}, drawn, front, x, y) {
-  const most = narrow ? 3 : 7;
-  const step = Math.max(1, (front.length - 1) / (most - 1));
-  const picked = [...new Set(Array.from({length: Math.min(most, front.length)}, (_, i) => front[Math.round(i * step)]))];
+/* Names of a few points on the front, so far apart that they do not cover each other. */
+function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
   const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10(measure.values[a]) : measure.values[a]);
-  return picked.filter(a => a !== undefined).map((a, i) => ({
+  const [spanX, spanY] = [x, y].map(measure => spanOf(drawn.map(a => place(measure, a))));
+  const near = (a, b) => Math.abs(place(x, a) - place(x, b)) / (spanX[1] - spanX[0]) * width < 170
+    && Math.abs(place(y, a) - place(y, b)) / (spanY[1] - spanY[0]) * 400 < 26;
+  const picked = [];
+  for (const a of [front[0], front[front.length - 1], ...front]) {
+    if (picked.length < (narrow ? 3 : 7) && !picked.some(b => near(a, b))) picked.push(a);
+  }
+  return picked.map((a, i) => ({
     x: place(x, a), y: place(y, a), text: safe(entry.combinations[a]), showarrow: true, arrowhead: 0, arrowwidth: 1,
     arrowcolor: colours.line, ax: x.better === "lower" ? -30 : 30, ay: i % 2 ? -34 : -16, font: {size: 10, color: colours.muted},
   }));

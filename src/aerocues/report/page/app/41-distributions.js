@@ -21,12 +21,12 @@ const DISTRIBUTIONS = {
     if (!points.x.length) return {empty: `None of these combinations has a value of ${labelOf(column)}.`};
     const bounded = isShare(column);
     return {
-      data: [spreadTrace(points, option("kind"), labelOf(column), colours)],
+      data: spreadTraces(points, option("kind"), labelOf(column), colours),
       height: Math.max(top.length, 2) * 40 + 60,
       layout: {
         xaxis: {title: axisLabel(entry, column), ...(option("scale") === "log" ? logAxis(points.x, value => valueText(column, value)) : {}),
           ...(bounded && option("scale") === "linear" ? {range: [-0.02, 1.02]} : {})},
-        yaxis: categoryAxis(names(entry, top)), showlegend: false, violingap: 0.15, boxgap: 0.3, hovermode: "closest",
+        yaxis: categoryAxis(names(entry, top)), showlegend: false, violinmode: "overlay", violingap: 0.15, boxgap: 0.3, hovermode: "closest",
       },
       note: failuresNote(entry, top),
     };
@@ -59,7 +59,16 @@ function pointsOfPairs(entry, column, rows, positive) {
   return {x, y, ids};
 }
 
-/* One trace for all rows: Plotly groups the points by category. */
+/* One trace for all rows, but for violins: within a trace Plotly gives them different widths. */
+function spreadTraces(points, kind, name, colours) {
+  if (kind !== "violin") return [spreadTrace(points, kind, name, colours)];
+  return [...new Set(points.y)].map(row => {
+    const own = points.y.map((_, i) => i).filter(i => points.y[i] === row);
+    const [x, y, ids] = [points.x, points.y, points.ids].map(values => own.map(i => values[i]));
+    return {...spreadTrace({x, y, ids}, kind, name, colours), scalegroup: row};
+  });
+}
+
 function spreadTrace({x, y, ids}, kind, name, colours) {
   const color = colours.series[0];
   const marker = {color, size: 4, opacity: 0.65};

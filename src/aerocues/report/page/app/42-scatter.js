@@ -4,7 +4,7 @@ function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
   const {entry, option, theme, narrow, shown: rows} = context;
   const each = option("points") === "pairs";
   const [x, y] = [xName, yName].map(name => (each ? null : measure(entry, name)));
-  const axis = name => ({title: axisLabel(entry, name), ...(log ? logAxis(rows.flatMap(a =>
+  const axis = name => ({title: axisLabel(entry, name), tickangle: 0, nticks: narrow ? 5 : 8, ...(log ? logAxis(rows.flatMap(a =>
     (each ? Array.from(pairValues(entry, name, a)) : [meansOf(entry, name)[a]]))) : {})});
   const axes = {xaxis: axis(xName), yaxis: axis(yName)};
   const height = narrow ? 420 : 460;
@@ -15,7 +15,7 @@ function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
   return {
     data: [...(band ? band(context, drawn, x, y) : []), ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
     height,
-    layout: {...axes, hovermode: "closest", legend: narrow ? {y: -0.2, yanchor: "top"}
+    layout: {...axes, hovermode: "closest", legend: narrow ? {}
       : {orientation: "v", x: 1.01, y: 1, yanchor: "top"}},
     note: `Spearman’s correlation over ${counted(drawn.length, "combination")}: `
       + `${fixed(spearman(drawn.map(a => x.values[a]), drawn.map(a => y.values[a])), 2)}.`,

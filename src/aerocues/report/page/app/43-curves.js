@@ -63,7 +63,7 @@ function placeCurve(layout, entry, curve, i, {columns, lines}) {
   const top = 1 - line / lines;
   const bottom = top - (1 / lines) * 0.7;
   const suffix = i ? String(i + 1) : "";
-  layout[`xaxis${suffix}`] = {domain: [left, left + wide], anchor: `y${i + 1}`, title: safe(curve.axis), nticks: 8,
+  layout[`xaxis${suffix}`] = {domain: [left, left + wide], anchor: `y${i + 1}`, title: {text: safe(curve.axis), standoff: 4}, nticks: 8,
     automargin: false, tickvals: curve.x.length <= 8 ? [...new Set(curve.x)] : undefined};
   layout[`yaxis${suffix}`] = {domain: [bottom, top], anchor: `x${i + 1}`, rangemode: "tozero", nticks: 5,
     ...(i ? {matches: "y"} : {})};

@@ -6,7 +6,7 @@ addSection({
   read: "How far the ranking can be trusted: what depends on choices made in the scoring, what other methods of "
     + "decision make of the same numbers, and whether it carries over to other images and machines.",
   build(body) {
-    for (const spec of [CRITERIA_MATRIX, SENSITIVITY, AGREEMENT, CRITICAL, RANKINGS_MATRIX, SLOPES]) addFigure(body, spec);
+    for (const spec of [CRITERIA_MATRIX, SENSITIVITY, AGREEMENT, CRITICAL, SLOPES, RANKINGS_MATRIX]) addFigure(body, spec);
     body.append(make("div", {id: "reversal", class: "figure"}), make("div", {id: "versatility", class: "figure wide"}));
   },
   update(body, changed) {
@@ -31,9 +31,9 @@ function matrixFigure({x, y, z, theme, narrow, what, low = -1}) {
       colorscale: low < 0 ? DIVERGING[theme] : SCALE,
       colorbar: {thickness: 10, outlinewidth: 0, len: 0.8, tickfont: {size: 10}},
       hovertemplate: "%{y}<br>%{x}<br>%{z:.3f}<extra></extra>",
-      ...(roomy ? {texttemplate: "%{text}", text: z.map(row => row.map(value => correlationText(value))), textfont: {size}} : {}),
-    }],
-    height: Math.max(y.length, 3) * 26 + (numbered ? 60 : 150),
+    }, ...(roomy ? cellTexts({...labels, z, texts: z.map(row => row.map(correlationText)), size,
+      isBright: value => (low < 0 ? isBrightOnDiverging(theme, value) : isBrightOnScale((value - low) / (1 - low)))}) : [])],
+    height: y.length * (y.length > 6 ? 26 : 38) + (numbered ? 60 : (y.length > 6 ? 150 : 100)),
     layout: {xaxis: {...categoryAxis(labels.x), autorange: true, tickangle: !numbered && x.some(each => each.length > 8) ? -40 : 0, tickfont: {size: narrow ? 9 : 10.5}},
       yaxis: {...categoryAxis(labels.y), tickfont: {size: narrow ? 9 : 10.5}}},
   };

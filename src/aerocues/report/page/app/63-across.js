@@ -23,7 +23,7 @@ function boundsOfCounts(numbers) {
 }
 
 const SLOPES = {
-  id: "slopes", title: "Ranks from data set to data set",
+  id: "slopes", title: "Ranks from data set to data set", tall: true,
   read: "A line is a combination, its height the rank on each data set, 1 at the top. Flat lines hold everywhere; the best by mean score are shown.",
   controls: [{name: "top", label: "Combinations", fallback: () => "10",
     options: () => [7, 10, 14].map(size => ({key: String(size), label: `most versatile ${size}`}))},
@@ -34,7 +34,7 @@ const SLOPES = {
     const {option, theme, narrow} = context;
     const top = versatile().slice(0, Number(option("top")));
     if (!top.length) return {empty: "No combination passes the filter."};
-    const labels = payload.comparison.names.map(safe);
+    const labels = payload.comparison.names.map(name => safe(name).replace(" (", "<br>("));
     const data = top.map((row, i) => {
       const {color, symbol} = seriesStyle(theme, i);
       return {type: "scatter", mode: "lines+markers", name: safe(row.alternative), x: labels, y: row.ranks,
@@ -45,7 +45,7 @@ const SLOPES = {
       data, height: narrow ? 460 + 16 * top.length : 460,
       layout: {hovermode: "closest", xaxis: {type: "category", range: [-0.15, labels.length - 0.85], tickfont: {size: narrow ? 9 : 11}},
         yaxis: {title: "rank", type: option("scale"), autorange: "reversed", ...(option("scale") === "log" ? {tickvals: [1, 2, 3, 5, 10, 20, 50, 100, 200, 400]} : {})},
-        legend: narrow ? {y: -0.15, yanchor: "top"} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"}},
+        legend: narrow ? {} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"}},
     };
   },
 };

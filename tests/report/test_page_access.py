@@ -1,0 +1,86 @@
+"""Whether everyone can use the page: by keyboard, by ear, in the dark, on paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.report.conftest import Opened
+
+Open = Callable[..., Opened]
+
+
+def _violations(opened: Opened) -> list[str]:
+    package = pytest.importorskip("axe_playwright_python", reason="axe is not installed")
+    script = Path(package.__file__).with_name("axe.min.js").read_text(encoding="utf-8")
+    opened.page.evaluate(script)
+    found: dict[str, Any] = opened.page.evaluate("axe.run()")
+    return [
+        f"{violation['id']}: {node['html'][:200]} {node['failureSummary']}"
+        for violation in found["violations"]
+        if violation["impact"] in ("serious", "critical")
+        for node in violation["nodes"]
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 390])
+def test_axe_finds_nothing_serious(open_report: Open, scheme: str, width: int) -> None:
+    opened = open_report("#q=sift", viewport={"width": width, "height": 900}, color_scheme=scheme)
+    opened.page.click("#methods-summary")
+    for summary in opened.page.locator("#sections summary").all():
+        summary.click()
+    for figure in opened.page.locator("figure.figure").all():
+        figure.scroll_into_view_if_needed()
+        opened.page.wait_for_timeout(60)
+    assert _violations(opened) == []
+
+
+def test_the_page_is_used_by_keyboard(open_report: Open) -> None:
+    opened = open_report()
+    opened.page.keyboard.press("Tab")
+    assert opened.page.evaluate("document.activeElement.className") == "skip"
+    opened.page.focus("#filter")
+    opened.page.keyboard.type("orb")
+    heading = '#ranking th[data-key="combination"] button'
+    opened.page.focus(heading)
+    opened.page.keyboard.press("Enter")
+    assert opened.page.evaluate("document.activeElement.textContent") == "Combination"
+    assert opened.rows()[0] == "<b>MINE-ORB-HAM-BF"
+    assert "Sorted by Combination" in str(opened.page.text_content("#announcer"))
+    opened.page.focus('#contents a[href="#method"]')
+    opened.page.keyboard.press("Enter")
+    assert opened.page.evaluate("document.activeElement.id") == "title-method"
+
+
+def _wait_for_theme(opened: Opened, theme: str) -> None:
+    opened.page.wait_for_function(
+        "theme => document.documentElement.dataset.theme === theme", arg=theme
+    )
+
+
+def test_light_and_dark_follow_the_system_until_chosen(open_report: Open) -> None:
+    opened = open_report(color_scheme="dark")
+    _wait_for_theme(opened, "dark")
+    opened.page.emulate_media(color_scheme="light")
+    _wait_for_theme(opened, "light")
+    opened.page.click("#theme")
+    _wait_for_theme(opened, "dark")
+    assert opened.fragment() == "theme=dark"
+    opened.page.emulate_media(color_scheme="dark")
+    opened.page.click("#theme")
+    _wait_for_theme(opened, "light")
+
+
+def test_paper_has_every_figure(open_report: Open) -> None:
+    opened = open_report()
+    opened.figure("heat")
+    opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert opened.page.locator("figure.figure:not(:has(.main-svg))").count() == 0
+    opened.page.evaluate("window.dispatchEvent(new Event('afterprint'))")
+    opened.page.emulate_media(media="print")
+    assert opened.page.locator("#toolbar").is_hidden()

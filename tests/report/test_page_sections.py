@@ -1,0 +1,161 @@
+"""What the sections of the page show, and that nothing in data can break out of its place."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.report.conftest import Opened, written
+from tests.report.small_payload import HARMFUL, lone_payload, names_of
+
+Open = Callable[..., Opened]
+NAMES = names_of()
+FIGURES = (
+    "heat", "dots", "weights", "components", "pareto",
+    "spread", "pr", "im", "curves", "truth", "truthmatrix",
+    "stages", "thousand", "bymethod", "matchers", "machines",
+    "criteria", "sensitivity", "agreement", "critical", "slopes", "rankings",
+)  # fmt: skip
+
+
+@pytest.mark.slow
+def test_every_figure_is_drawn(open_report: Open) -> None:
+    opened = open_report()
+    found = opened.page.eval_on_selector_all(
+        "figure.figure", "all => all.map(each => each.id.replace('figure-', ''))"
+    )
+    assert found == list(FIGURES)
+    for name in FIGURES:
+        opened.figure(name)
+        assert not opened.page.locator(f"#figure-{name} .nothing").count(), name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 390])
+def test_nothing_is_wider_than_the_window(open_report: Open, width: int) -> None:
+    opened = open_report(viewport={"width": width, "height": 800})
+    for name in FIGURES:
+        opened.figure(name)
+    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_the_answer_comes_first(open_report: Open) -> None:
+    opened = open_report()
+    words = opened.page.inner_text("#verdict")
+    assert "SIFT-SIFT-L2-BF is the best of 12 combinations" in words
+    assert "80\u00a0% of 1,000 resamples of the 8 pairs" in words
+    assert "2 others cannot be told from it" in words
+    assert opened.page.locator(".card h3").all_inner_texts() == [
+        "Best",
+        "Cannot be told from it",
+        "Fastest good one",
+        "Best with binary descriptors",
+    ]
+    opened.page.fill("#filter", "orb")
+    assert opened.page.locator(".card.filtered .name").inner_text() == "ORB-ORB-HAM-BF"
+
+
+def test_the_table_is_sorted_by_its_headings(open_report: Open) -> None:
+    opened = open_report()
+    assert opened.rows()[0] == "SIFT-SIFT-L2-BF"
+    heading = '#ranking th[data-key="combination"]'
+    opened.page.click(f"{heading} button")
+    assert opened.rows() == sorted(NAMES, key=str.casefold)
+    assert opened.page.get_attribute(heading, "aria-sort") == "ascending"
+    opened.page.click(f"{heading} button")
+    assert opened.rows() == sorted(NAMES, key=str.casefold, reverse=True)
+    # The best has no p: what has no value comes last, whichever way.
+    for _ in range(2):
+        opened.page.click('#ranking th[data-key="p_value"] button')
+        assert opened.rows()[-1] == "SIFT-SIFT-L2-BF"
+
+
+def test_columns_are_chosen(open_report: Open) -> None:
+    opened = open_report()
+    opened.page.get_by_text("Columns", exact=True).click()
+    opened.page.get_by_label("Detector", exact=True).check()
+    assert opened.page.locator('#ranking th[data-key="detector"]').count() == 1
+    opened.page.get_by_label("p", exact=True).uncheck()
+    assert opened.page.locator('#ranking th[data-key="p_value"]').count() == 0
+    opened.page.get_by_text("Usual columns").click()
+    assert opened.page.locator('#ranking th[data-key="p_value"]').count() == 1
+
+
+def _saved(opened: Opened, click: str) -> tuple[str, bytes]:
+    with opened.page.expect_download() as waiting:
+        opened.page.click(click)
+    return waiting.value.suggested_filename, Path(waiting.value.path()).read_bytes()
+
+
+def test_the_table_is_saved_as_it_is_filtered(open_report: Open) -> None:
+    opened = open_report("#q=daisy&sort=-combination")
+    name, content = _saved(opened, "#save-ranking")
+    rows = list(csv.DictReader(io.StringIO(content.decode())))
+    assert name.endswith("ranking.csv")
+    assert [row["combination"] for row in rows] == [
+        "SIFT-DAISY-L2-BF", "GFTT_H-DAISY-L2-BF", "GFTT-DAISY-L2-BF"]  # fmt: skip
+    assert 0 < float(rows[0]["score_low"]) < float(rows[0]["score"]) < 1
+
+
+def test_figures_are_saved(open_report: Open) -> None:
+    opened = open_report("#theme=dark")
+    opened.figure("pareto")
+    name, content = _saved(opened, '#figure-pareto button:text-is("SVG")')
+    assert name.endswith("speed-against-quality.svg")
+    assert content.startswith(b"<svg")
+    assert b"SIFT-SIFT-L2-BF" in content
+    assert _saved(opened, '#figure-pareto button:text-is("PNG")')[1].startswith(b"\x89PNG")
+    table = _saved(opened, '#figure-pareto button:text-is("CSV")')[1].decode()
+    rows = list(csv.reader(io.StringIO(table)))
+    assert rows[0] == ["series", "x", "y", "value_or_name"]
+    assert sorted(row[3] for row in rows[1:]) == sorted(NAMES)
+
+
+def test_matches_are_drawn_and_counted(open_report: Open) -> None:
+    opened = open_report()
+    panel = opened.page.locator(".panel-of-matches").first
+    panel.scroll_into_view_if_needed()
+    panel.get_by_text("Every 2nd match is drawn: 10 inliers, 10 outliers.").wait_for()
+    assert "SIFT-SIFT-L2-BF" in panel.inner_text()
+    opened.page.get_by_role("checkbox", name="Outliers").uncheck()
+    opened.page.get_by_role("checkbox", name="Keypoints").check()
+    panel.get_by_text(
+        "Every 3rd keypoint is drawn. Every 2nd match is drawn: 10 inliers, 0 outliers."
+    ).wait_for()
+    assert "picture.outliers=no" in opened.fragment()
+    opened.page.get_by_role("combobox", name="Images").select_option("5")
+    panel.get_by_text("no picture of this combination").wait_for()
+
+
+def test_the_section_of_models_is_hidden_without_models(open_report: Open) -> None:
+    opened = open_report()
+    assert opened.page.locator("#models").is_hidden()
+    assert opened.page.locator('#contents a[href="#models"]').is_hidden()
+
+
+@pytest.mark.slow
+def test_names_and_messages_stay_text(open_report: Open) -> None:
+    opened = open_report()
+    for name in FIGURES:
+        opened.figure(name)
+    for summary in opened.page.locator("#method summary").all():
+        summary.click()
+    assert f"it failed {HARMFUL}" in opened.page.inner_text("#method")
+    assert HARMFUL in opened.page.inner_text("h1")
+    assert opened.page.evaluate("window.harmed") is None
+    assert opened.page.locator("img").count() == 0
+    assert "<b>MINE" in str(opened.page.text_content("#figure-heat .plot"))
+
+
+@pytest.mark.slow
+def test_one_combination_on_one_pair_is_a_report_too(open_report: Open, tmp_path: Path) -> None:
+    opened = open_report(file=written(lone_payload(), tmp_path / "lone.html"))
+    assert "the only combination measured" in opened.page.inner_text("#verdict")
+    assert opened.page.locator("#entry").count() == 0
+    for name in FIGURES:
+        opened.figure(name)
+    assert opened.page.locator("#pictures").is_hidden()
