@@ -403,3 +403,28 @@ def test_the_published_measurements_are_read(shared_data: Path, tmp_path: Path) 
     assert len(drone.reconstructions()) == 422
     run = json.loads((drone.folder / "run.json").read_text())
     assert run["dataset"]["pairs"] == 35
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("recall", "7", "has a recall above 1; it is a ratio, not percent"),
+        ("f1_score", "88", "has a f1_score above 1"),
+        ("seconds_per_1k_inliers", "inf", "has an infinite seconds_per_1k_inliers"),
+    ],
+)
+def test_figures_that_cannot_be_are_refused(
+    table: Path, tmp_path: Path, name: str, value: str, told: str
+) -> None:
+    frame = pl.read_csv(table, infer_schema=False).with_columns(pl.lit(value).alias(name))
+    frame.write_csv(table)
+    with pytest.raises(StoreError, match=told):
+        import_results(table, tmp_path / "results")
+
+
+def test_blank_lines_at_the_end_are_no_rows(table: Path, tmp_path: Path) -> None:
+    number = len(pl.read_csv(table))
+    blank = "," * table.read_text().splitlines()[0].count(",")
+    table.write_text(f"{table.read_text()}{blank}\n\n")
+    [results] = import_results(table, tmp_path / "results")
+    assert len(results.table()) == number

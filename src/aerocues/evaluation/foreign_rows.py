@@ -31,6 +31,7 @@ VALUES = (
     "seconds_per_1k_inliers",
 )
 REQUIRED = ("dataset", "detector", "descriptor", "norm", "matcher", "pair", *VALUES)
+RATIOS = ("precision", "recall", "repeatability", "f1_score")
 FAILED = "it failed where it was measured"
 
 
@@ -58,7 +59,15 @@ def _check_values(table: TableFile, rows: pl.DataFrame) -> None:
     known = [status.name for status in STATUSES]
     checks = (
         (pl.col("pair").is_null(), "has no number of its pair"),
-        (pl.col("precision") > 1, "has a precision above 1; it is a ratio, inliers / matches"),
+        *(
+            (pl.col(name) > 1, f"has a {name} above 1; it is a ratio, not percent")
+            for name in RATIOS
+        ),
+        *(
+            (pl.col(name).is_infinite(), f"has an infinite {name}; leave it empty")
+            for name in VALUES
+            if rows.schema[name].is_float()
+        ),
         (pl.col("inliers") > pl.col("matches"), "has more inliers than matches"),
         (
             ~pl.col("status").is_in(known),

@@ -69,8 +69,8 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
             frame = pl.read_csv(io.BytesIO(content), infer_schema=False)
     except (pl.exceptions.PolarsError, OSError) as error:
         form = "Parquet" if is_parquet else "CSV"
-        reason = " ".join(str(error).split())[:200]
-        raise StoreError(f"{file} cannot be read as {form}: {reason}; write it again") from error
+        raise StoreError(f"{file} cannot be read as {form}: {_reason(error)}") from error
+    frame = frame.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines
     if frame.is_empty():
         raise StoreError(f"{file} has no row; give a table with one at least")
     table = TableFile(file.name, hashlib.sha256(content).hexdigest(), frame)
@@ -79,6 +79,15 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
         if names.count(name) > 1:
             raise table.wrong(f"has the column {name} twice (as {given}); keep one")
     return replace(table, frame=frame.rename(dict(zip(frame.columns, names, strict=True))))
+
+
+def _reason(error: Exception) -> str:
+    """What is wrong and what to do; the rest of such messages is about polars."""
+    text = " ".join(str(error).split())
+    if "utf-8" in text.lower():
+        return "it is not UTF-8; save it as UTF-8"
+    what = text.split("Consider", maxsplit=1)[0].strip(" .:;")[:120]
+    return f"{what}; check that all its lines have the same columns, and write it again"
 
 
 def in_columns(
