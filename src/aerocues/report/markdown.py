@@ -91,6 +91,8 @@ def _others(found: ReportEntry) -> Iterator[str]:
         )
     if binary is not None:
         yield f"- best binary descriptor: `{names[binary]}`"
+    if not ranking.scores.table.by_repeat.all():
+        yield "- of each reconstruction there is one figure: its luck is in no interval"
 
 
 def _listed(names: Sequence[str]) -> str:
