@@ -83,9 +83,9 @@ def main() -> None:
         saving.append(naive["cpu"] / whole["cpu"])
         speed_up.append(one["wall"] / two["wall"])
         print(
-            f"{whole['rows']:.0f} rows: bare {bare['cpu']:.1f} s, run {whole['cpu']:.1f} s, naive "
-            f"{naive['cpu']:.1f} s CPU; {one['rows']:.0f} rows: one worker {one['wall']:.1f} s, two "
-            f"{two['wall']:.1f} s",
+            f"{whole['rows']:.0f} rows: bare {bare['cpu']:.1f} s, run {whole['cpu']:.1f} s, "
+            f"naive {naive['cpu']:.1f} s CPU; {one['rows']:.0f} rows: one worker "
+            f"{one['wall']:.1f} s, two {two['wall']:.1f} s",
             flush=True,
         )
     for name, figures in (
