@@ -15,11 +15,12 @@ DETECTOR = 0
 
 @dataclass(frozen=True)
 class Choice:
-    """A combination on a pair, and why it is shown."""
+    """A combination on a pair, and why each of them is shown."""
 
     combination: str
     pair: int
     why: str
+    role: str
 
 
 def chosen_combinations(found: ReportEntry, number: int) -> dict[str, str]:
@@ -66,13 +67,13 @@ def chosen_pictures(found: ReportEntry, number: int) -> list[Choice]:
         along[-1]: "best pair",
     }
     choices = [
-        Choice(name, pair, f"{combinations[name]}, {why}")
+        Choice(name, pair, why, combinations[name])
         for pair, why in shared.items()
         for name in combinations
         if pair in by_name[name]
     ]
     choices += [
-        Choice(name, pairs[0], f"{combinations[name]}, its own worst pair")
+        Choice(name, pairs[0], f"worst pair of {name}", combinations[name])
         for name, pairs in by_name.items()
         if pairs and pairs[0] not in shared
     ]

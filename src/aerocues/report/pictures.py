@@ -124,6 +124,7 @@ def _picture(found: ReportEntry, process: DrawingProcess, choice: Choice) -> dic
         "inlier": packed_bytes(drawn.inliers[::every_m]),
         "matches_every": every_m,
         "why": choice.why,
+        "role": choice.role,
         "note": note,
         "figures": {name: row[name] for name in FIGURES if row.get(name) is not None},
     }
