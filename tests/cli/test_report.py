@@ -87,6 +87,7 @@ def test_figures_are_written_alone_or_beside_the_page(
         (["missing"], "error: "),
         (["RESULTS", "--dataset", "x"], "error: "),
         (["RESULTS", "--criteria", "beauty"], "there is no criterion 'beauty'"),
+        (["RESULTS", "--images", "oxfrd:x"], "did you mean oxford"),
         (["RESULTS", "--max-megabytes", "1"], "error: "),
         (["RESULTS", "-o", "missing/page.html", "--pictures", "0"], "cannot write"),
         ([], "error: "),

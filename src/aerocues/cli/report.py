@@ -123,7 +123,7 @@ def report(
 def _tell(what: str) -> None:
     """Say what is being done, where somebody may be waiting."""
     if sys.stderr.isatty():
-        sys.stderr.write(f"{what} ...\n")
+        sys.stderr.write(f"{what}\n")
 
 
 def _write_figures(entries: list[ReportEntry], folder: Path) -> None:

@@ -182,6 +182,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
         f"results  {results.folder}",
         f"next     aerocues status {folder}",
         f"         aerocues score {folder}",
+        f"         aerocues report {folder}",
         f"         aerocues results {folder} --csv rows.csv",
     ):
         console.print(line, soft_wrap=True, markup=False)

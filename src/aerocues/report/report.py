@@ -174,12 +174,15 @@ def write_page(
     progress: Progress | None = None,
 ) -> Path:
     """Write the page of entries that are scored; see `write_report`."""
+    from aerocues.datasets.catalog import open_dataset
     from aerocues.report.page import page_of
     from aerocues.report.payload import payload_of
     from aerocues.report.pictures import pictures_of
     from aerocues.report.size import fitting
 
     told = progress or _silent
+    for spec in images:
+        open_dataset(spec)  # a wrong one is a mistake to be told, not a reason for no pictures
     found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
     told(f"writing {output}")
     heading = title or default_title(entries)
@@ -191,4 +194,6 @@ def write_page(
         payload = payload_of(entries, heading, pictures=kept)
         page = page_of(payload).encode()
     write_file(output, page)
+    for note in kept.notes:
+        told(note)
     return output
