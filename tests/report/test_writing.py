@@ -73,3 +73,9 @@ def test_results_that_suit_different_presets(tmp_path: Path, flight: Results) ->
     without = folder_of(measured(dataset="other", chance_inliers=None), tmp_path)
     with pytest.raises(ScoreError, match="choose one with --preset"):
         aerocues.write_report([flight, without], tmp_path / "page.html")
+
+
+def test_results_tell_where_their_images_are(finished: Results, photos: Path) -> None:
+    source = finished.settings["dataset"]["source"]
+    assert source["spec"] == str(photos)
+    assert aerocues.open_dataset(**source).images

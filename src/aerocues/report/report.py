@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from aerocues.errors import ScoreError
+from aerocues.errors import ScoreError, StoreError
 from aerocues.evaluation.export import write_file
 from aerocues.evaluation.results import Results
 from aerocues.report.entry import ReportEntry
@@ -181,6 +181,10 @@ def write_page(
     from aerocues.report.size import fitting
 
     told = progress or _silent
+    if not output.parent.is_dir():  # told before the pictures, which take long
+        raise StoreError(
+            f"cannot write {output}: there is no folder {output.parent}; make it or give another file"
+        )
     for spec in images:
         open_dataset(spec)  # a wrong one is a mistake to be told, not a reason for no pictures
     found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
