@@ -181,9 +181,10 @@ def write_page(
     from aerocues.report.size import fitting
 
     told = progress or _silent
-    if not output.parent.is_dir():  # told before the pictures, which take long
+    folder = output.expanduser().parent
+    if not folder.is_dir():  # told before the pictures, which take long
         raise StoreError(
-            f"cannot write {output}: there is no folder {output.parent}; make it or give another file"
+            f"cannot write {output}: there is no folder {folder}; make it or give another file"
         )
     for spec in images:
         open_dataset(spec)  # a wrong one is a mistake to be told, not a reason for no pictures
