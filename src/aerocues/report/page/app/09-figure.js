@@ -85,8 +85,7 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
   };
   const base = {
     width, height, autosize: false, paper_bgcolor: colours.surface, plot_bgcolor: colours.surface,
-    font: {family: "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif",
-      size: narrow ? 11 : 12, color: colours.ink},
+    font: {family: FONT, size: narrow ? 11 : 12, color: colours.ink},
     margin: {l: 8, r: narrow ? 8 : 16, t: 8, b: 8, pad: 2},
     hoverlabel: {bgcolor: colours.surface, bordercolor: colours.line,
       font: {color: colours.ink, size: 12}, align: "left"},
@@ -102,7 +101,29 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
   for (const name of Object.keys(layout).filter(key => /^[xy]axis\d*$/.test(key))) {
     merged[name] = withAxis(axis, layout[name]);
   }
-  return merged;
+  return merged.yaxis2 ? merged : withKnownMargins(merged);
+}
+
+/* Margins worked out here: to have Plotly find them, it draws everything twice or more. */
+function withKnownMargins(layout) {
+  const {xaxis, yaxis, margin} = layout;
+  if (xaxis?.type !== "category" && xaxis?.automargin) {
+    Object.assign(margin, {b: xaxis.title?.text ? 46 : 28});
+    xaxis.automargin = false;
+  }
+  if (yaxis?.type === "category" && yaxis.automargin) {
+    margin.l = widestText(yaxis.categoryarray.map(unsafe), yaxis.tickfont?.size ?? 12) + 10;
+    yaxis.automargin = false;
+  }
+  return layout;
+}
+
+const ruler = document.createElement("canvas").getContext("2d");
+const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
+
+function widestText(texts, size) {
+  ruler.font = `${size}px ${FONT}`;
+  return Math.ceil(Math.max(0, ...texts.map(text => ruler.measureText(text).width)));
 }
 
 function withAxis(axis, own) {
@@ -151,7 +172,7 @@ function unsafe(text) {
   return text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
 }
 
-/* Marks figures as out of date and draws those near the window, one a frame's share of time. */
+/* Marks figures as out of date and draws those near the window, one a frame, those in it first. */
 function refreshFigures(changed) {
   const own = [...changed].every(key => key.includes("."));
   for (const figure of figures) {
@@ -165,14 +186,20 @@ let drawing = false;
 
 function drawStale() {
   if (drawing || !window.Plotly) return;
-  const next = figures.find(figure => figure.stale && figure.near && figure.plot.clientWidth);
-  if (!next) return;
+  const waiting = figures.filter(figure => figure.stale && figure.near && figure.plot.clientWidth);
+  if (!waiting.length) return;
+  const next = waiting.find(isInWindow) ?? waiting[0];
   drawing = true;
   requestAnimationFrame(() => {
     drawing = false;
     drawFigure(next);
     drawStale();
   });
+}
+
+function isInWindow({plot}) {
+  const {top, bottom} = plot.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
 }
 
 const whenNear = new IntersectionObserver(seen => {

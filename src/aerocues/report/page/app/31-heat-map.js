@@ -27,7 +27,7 @@ const HEAT_MAP = {
     };
     const height = lines * panelHeight + 84;
     panels.forEach((panel, i) => placePanel(layout, panel, i, {columns, lines, detectors, descriptors, narrow, cell}));
-    Object.assign(layout.margin, {t: 84, b: 0});
+    Object.assign(layout.margin, {t: 84, b: 0, l: widestText(detectors, narrow ? 9 : 10) + 10});
     return {
       data: drawn.flat(), layout, height,
       summary: heatSummary(entry, rows, measure),
@@ -115,9 +115,9 @@ function placePanel(layout, [norm, matcher], i, {columns, lines, detectors, desc
   const bottom = top - tall * (detectors.length * cell / (detectors.length * cell + 84));
   const suffix = i ? String(i + 1) : "";
   const left = column * (wide + gap);
-  layout[`xaxis${suffix}`] = {...categoryAxis(descriptors.map(safe)), autorange: true, domain: [left, left + wide],
+  layout[`xaxis${suffix}`] = {...categoryAxis(descriptors.map(safe)), autorange: true, automargin: false, domain: [left, left + wide],
     anchor: `y${i + 1}`, tickangle: -60, tickfont: {size: narrow ? 9 : 10}};
-  layout[`yaxis${suffix}`] = {...categoryAxis(detectors.map(safe)), domain: [Math.max(bottom, 0), top],
+  layout[`yaxis${suffix}`] = {...categoryAxis(detectors.map(safe)), automargin: false, domain: [Math.max(bottom, 0), top],
     anchor: `x${i + 1}`, tickfont: {size: narrow ? 9 : 10}};
   layout.annotations.push({text: `<b>${safe(`${norm}, ${matcher}`)}</b>`, xref: "paper", yref: "paper", x: left,
     y: top, xanchor: "left", yanchor: "bottom", showarrow: false, font: {size: 12}});

@@ -15,8 +15,7 @@ function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
   return {
     data: [...(band ? band(context, drawn, x, y) : []), ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
     height,
-    layout: {...axes, hovermode: "closest", legend: narrow ? {}
-      : {orientation: "v", x: 1.01, y: 1, yanchor: "top"}},
+    layout: scatterFrame(axes.xaxis, axes.yaxis, narrow),
     note: `Spearman’s correlation over ${counted(drawn.length, "combination")}: `
       + `${fixed(spearman(drawn.map(a => x.values[a]), drawn.map(a => y.values[a])), 2)}.`,
   };

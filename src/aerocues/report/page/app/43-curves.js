@@ -65,7 +65,7 @@ function placeCurve(layout, entry, curve, i, {columns, lines}) {
   const suffix = i ? String(i + 1) : "";
   layout[`xaxis${suffix}`] = {domain: [left, left + wide], anchor: `y${i + 1}`, title: {text: safe(curve.axis), standoff: 4}, nticks: 8,
     automargin: false, tickvals: curve.x.length <= 8 ? [...new Set(curve.x)] : undefined};
-  layout[`yaxis${suffix}`] = {domain: [bottom, top], anchor: `x${i + 1}`, rangemode: "tozero", nticks: 5,
+  layout[`yaxis${suffix}`] = {domain: [bottom, top], anchor: `x${i + 1}`, rangemode: "tozero", nticks: 5, automargin: i === 0,
     ...(i ? {matches: "y"} : {})};
   layout.annotations.push({text: `<b>${safe(curve.name)}</b>`, xref: "paper", yref: "paper", x: left, y: top,
     xanchor: "left", yanchor: "bottom", showarrow: false, font: {size: 12}});
