@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 NOT_MEASURED = "not measured"
 STAGES = ("detect", "describe", "match", "verify", "total")
-MOST_FAILURES = 60
+MOST_FAILURES = 400
 LONG = ("combinations", "exclusions")
 
 
@@ -116,18 +116,22 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
         "validation": validation_facts(found.ranking.scores, found.validation),
         **_outcomes(rows),
         "excluded": _excluded(found.settings),
-        "run": _run(found.settings),
+        "run": _run(found.settings, pairs) if known else {},
     }
 
 
-def _run(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """What ``run.json`` says but for long lists and the place of the images on this machine."""
+def _run(settings: Mapping[str, Any], pairs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What ``run.json`` says but for long lists and the place of the images on this machine.
+
+    It is about the latest run; the folder may hold the pairs of earlier ones, too.
+    """
     kept = {name: value for name, value in settings.items() if name not in LONG}
-    if isinstance(kept.get("dataset"), dict):
-        kept["dataset"] = {
-            name: value for name, value in kept["dataset"].items() if name != "source"
-        }
-    return kept
+    dataset = dict(kept["dataset"])
+    dataset.pop("source", None)
+    dataset["pairs"] = len(pairs)
+    if dataset.get("images"):
+        dataset["images"] = len({pair[name] for pair in pairs for name in ("image_1", "image_2")})
+    return {**kept, "dataset": dataset}
 
 
 def _timing(rows: pl.DataFrame) -> str:
