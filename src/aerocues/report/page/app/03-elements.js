@@ -17,6 +17,32 @@ function safe(text) {
   return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 }
 
+/* An SVG element with text and children. */
+function makeSvg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children.flat(Infinity));
+  return element;
+}
+
+/* Shows what stands in `data-tip` of the part of a drawing under the pointer. */
+function withTips(svg) {
+  const tip = document.getElementById("tip");
+  const show = event => {
+    const text = event.target.dataset?.tip;
+    tip.hidden = !text;
+    if (!text) return;
+    tip.textContent = text;
+    const {width, height} = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(4, Math.min(event.clientX + 12, window.innerWidth - width - 8))}px`;
+    tip.style.top = `${event.clientY + 16 + height > window.innerHeight ? event.clientY - height - 10 : event.clientY + 16}px`;
+  };
+  svg.addEventListener("pointermove", show);
+  svg.addEventListener("pointerdown", show);
+  svg.addEventListener("pointerleave", () => { tip.hidden = true; });
+  return svg;
+}
+
 function announce(text) {
   document.getElementById("announcer").textContent = text;
 }

@@ -15,6 +15,8 @@ const THEMES = {
 const SYMBOLS = ["circle", "diamond", "square", "triangle-up"];
 const OUTLINES = ["circle-open", "diamond-open", "square-open", "triangle-up-open"];
 const SCALE = "Cividis";
+const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
+  [165, 156, 116], [195, 179, 105], [225, 204, 85], [254, 232, 56]];
 /* From -1 over 0 to 1: blue, the surface's own, orange. */
 const DIVERGING = {
   light: [[0, "#0072b2"], [0.5, "#f7f7f5"], [1, "#d98a00"]],
@@ -30,6 +32,14 @@ function themeName() {
 
 function applyTheme() {
   document.documentElement.dataset.theme = themeName();
+}
+
+/* The colour at a share from 0 to 1. */
+function onCividis(share) {
+  const place = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
+  const [low, rest] = [Math.floor(place), place % 1];
+  const high = Math.min(low + 1, CIVIDIS.length - 1);
+  return `rgb(${CIVIDIS[low].map((value, i) => Math.round(value + rest * (CIVIDIS[high][i] - value))).join(" ")})`;
 }
 
 /* Whether a colour is bright enough for black text: on cividis from 0 to 1, on the diverging scale from -1 to 1. */

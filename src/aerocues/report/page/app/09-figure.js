@@ -2,7 +2,7 @@
 
    A figure is {id, title, read, controls, available(entry), draw(context)}. `read` says how to read
    it. `available` gives true or the reason why there is nothing. `draw` gives {data, layout, height,
-   note} or {empty: reason}, where context = {entry, shown, width, narrow, theme, colours, option}. */
+   note} for Plotly, {svg(), height, table} or {empty: reason}, where context = {entry, shown, width, narrow, theme, colours, option}. */
 
 const figures = [];
 const NARROW = 480;
@@ -61,9 +61,14 @@ function drawFigure(figure) {
   figure.element.classList.toggle("empty", Boolean(drawn.empty));
   showNote(figure, drawn);
   if (drawn.empty) {
-    Plotly.purge(figure.plot);
+    if (figure.plot.classList.contains("js-plotly-plot")) Plotly.purge(figure.plot);
     figure.plot.replaceChildren(make("p", {class: "nothing"}, drawn.empty));
     figure.plot.style.height = "auto";
+    return;
+  }
+  if (drawn.svg) {
+    figure.plot.style.height = `${drawn.height}px`;
+    figure.plot.replaceChildren(drawn.svg());
     return;
   }
   if (!figure.plot.classList.contains("js-plotly-plot")) figure.plot.replaceChildren();
@@ -138,7 +143,8 @@ async function saveFigure(figure, format) {
   const drawn = describeFigure(figure, context);
   if (drawn.empty) return announce(drawn.empty);
   const stem = fileStem(context.entry.name, figure.title);
-  if (format === "CSV") return saveCsv(stem, ...tableOfTraces(drawn.data));
+  if (format === "CSV") return saveCsv(stem, ...(drawn.table ?? tableOfTraces(drawn.data)));
+  if (drawn.svg) return saveDrawing(drawn.svg(), stem, format);
   const layout = fullLayout(drawn, context);
   const kind = format.toLowerCase();
   const url = await Plotly.toImage({data: drawn.data, layout, config: CONFIG},
@@ -147,6 +153,17 @@ async function saveFigure(figure, format) {
     ? decodeURIComponent(url.slice(url.indexOf(",") + 1))
     : new Blob([bytesOf(url.slice(url.indexOf(",") + 1))], {type: "image/png"});
   return saveFile(`${stem}.${kind}`, content, "image/svg+xml");
+}
+
+async function saveDrawing(svg, stem, format) {
+  const text = new XMLSerializer().serializeToString(svg);
+  if (format === "SVG") return saveFile(`${stem}.svg`, text, "image/svg+xml");
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await image.decode();
+  const canvas = make("canvas", {width: 2 * image.width, height: 2 * image.height});
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toBlob(blob => saveFile(`${stem}.png`, blob));
 }
 
 /* The points of a figure as a table, for those who would rather have numbers. */

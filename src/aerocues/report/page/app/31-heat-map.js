@@ -6,32 +6,19 @@ const HEAT_MAP = {
     + "shown on hover); empty ones were not measured or do not pass the filter.",
   controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
   draw(context) {
-    const {entry, narrow, shown: rows} = context;
+    const {entry, narrow, shown: rows, width} = context;
     const measure = measureOf(entry, context.option("value"));
+    const known = rows.map(a => measure.values[a]).filter(isKnown);
+    if (!known.length) return {empty: `None of these combinations has a value of ${measure.label}.`};
     const panels = heatPanels(entry, rows);
-    const detectors = inOrder(entry.detector, rows);
-    const descriptors = inOrder(entry.descriptor, rows);
-    const columns = narrow || panels.length === 1 ? 1 : 2;
-    const lines = Math.ceil(panels.length / columns);
-    const cell = narrow ? 18 : 24;
-    const panelHeight = detectors.length * cell + 84;
-    const [low, high] = boundsOf(rows.map(a => measure.values[a]).filter(isKnown));
-    const drawn = panels.map((panel, i) => heatTraces(context, measure, panel, detectors, descriptors, i, [low, high]));
-    const layout = {
-      margin: {t: 8, r: narrow ? 4 : 16},
-      annotations: [],
-      coloraxis: {colorscale: SCALE, cmin: low, cmax: high, reversescale: measure.better === "lower",
-        colorbar: {orientation: "h", thickness: 10, len: narrow ? 0.9 : 0.4, x: 0.5, y: 1,
-          yref: "container", yanchor: "top", ypad: 4, outlinewidth: 0,
-          title: {text: safe(measure.label), side: "top"}}},
+    const heat = {
+      measure, panels, bounds: spanOf(known), detectors: inOrder(entry.detector, rows),
+      descriptors: inOrder(entry.descriptor, rows), columns: narrow || panels.length === 1 ? 1 : 2,
+      at: new Map(rows.map(a => [entry.combinations[a], a])),
     };
-    const height = lines * panelHeight + 84;
-    panels.forEach((panel, i) => placePanel(layout, panel, i, {columns, lines, detectors, descriptors, narrow, cell}));
-    Object.assign(layout.margin, {t: 84, b: 0, l: widestText(detectors, narrow ? 9 : 10) + 10});
-    return {
-      data: drawn.flat(), layout, height,
-      summary: heatSummary(entry, rows, measure),
-    };
+    const size = heatSize(heat, width, narrow);
+    return {svg: () => heatDrawing(context, heat, size), height: size.height,
+      table: heatTable(context, heat), summary: heatSummary(entry, rows, measure)};
   },
 };
 
@@ -45,87 +32,107 @@ function heatPanels(entry, rows) {
   return keys.map(key => JSON.parse(key)).sort((a, b) => b[0].localeCompare(a[0]) || a[1].localeCompare(b[1]));
 }
 
-function heatTraces({entry, shown: rows, colours, width, narrow}, measure, [norm, matcher], detectors, descriptors, i, [low, high]) {
-  const at = new Map(rows.map(a => [entry.combinations[a], a]));
-  const reasons = payload.incompatible ?? {};
-  const [z, text, hover] = [[], [], []];
-  const hatched = {x: [], y: [], hover: []};
-  for (const detector of detectors) {
-    const line = descriptors.map(descriptor => {
-      const name = [detector, descriptor, norm, matcher].join("-");
-      const a = at.get(name);
-      if (a === undefined && Object.hasOwn(reasons, name)) {
-        hatched.x.push(safe(descriptor));
-        hatched.y.push(safe(detector));
-        hatched.hover.push(`<b>${safe(name)}</b><br>cannot run: ${wrapped(reasons[name])}`);
-      }
-      return a === undefined ? [null, "", ""] : heatCell(entry, measure, a);
-    });
-    z.push(line.map(each => each[0]));
-    text.push(line.map(each => each[1]));
-    hover.push(line.map(each => each[2]));
-  }
-  const axes = {xaxis: `x${i + 1}`, yaxis: `y${i + 1}`};
-  const roomy = !narrow && width / 2 / descriptors.length > 30;
-  return [
-    {type: "heatmap", name: safe(`${norm} ${matcher}`), x: descriptors.map(safe), y: detectors.map(safe), z,
-      customdata: hover, hovertemplate: "%{customdata}<extra></extra>", hoverongaps: false,
-      coloraxis: "coloraxis", xgap: 1, ygap: 1, ...axes},
-    ...(roomy ? cellTexts({x: descriptors.map(safe), y: detectors.map(safe), z, texts: text, size: 9, axes, isBright: value => {
-      const share = (value - low) / (high - low || 1);
-      return isBrightOnScale(measure.better === "lower" ? 1 - share : share);
-    }}) : []),
-    {type: "scatter", mode: "markers", name: "not in the table", x: hatched.x, y: hatched.y, hovertext: hatched.hover,
-      hoverinfo: "text", showlegend: false, ...axes,
-      marker: {symbol: "line-ne-open", size: narrow ? 9 : 11, color: colours.hatch, line: {width: 1.2, color: colours.hatch}}},
-  ];
+const HEAT_LABEL = 11;
+
+/* Sizes in pixels: of a cell, of the labels and of a panel, which holds its title and both labels. */
+function heatSize({detectors, descriptors, panels, columns}, width, narrow) {
+  const left = widestText(detectors, HEAT_LABEL) + 8;
+  const below = Math.ceil(widestText(descriptors, HEAT_LABEL) * 0.85) + 14;
+  const panelWidth = Math.floor((width - (columns - 1) * 24) / columns);
+  const cell = {width: Math.min(64, (panelWidth - left) / descriptors.length), height: narrow ? 18 : 23};
+  const panelHeight = 24 + detectors.length * cell.height + below;
+  const top = 48;
+  return {width, left, top, cell, panelWidth, panelHeight, titled: 24,
+    height: top + Math.ceil(panels.length / columns) * panelHeight};
 }
 
-function heatCell(entry, measure, a) {
-  const value = measure.values[a];
-  const rank = isKnown(entry.score.rank[a]) ? `<br>rank ${entry.score.rank[a]}` : "";
-  return [value, cellText(value), `<b>${safe(entry.combinations[a])}</b><br>${safe(measure.label)} `
-    + `${safe(valueText(measure.key, value))}${rank}<br>succeeds on ${safe(percent(entry.score.success_rate[a]))}`];
+function heatShare({measure, bounds: [low, high]}, value) {
+  const share = (value - low) / (high - low);
+  return measure.better === "lower" ? 1 - share : share;
+}
+
+function heatDrawing(context, heat, size) {
+  const {colours} = context;
+  const svg = makeSvg("svg", {class: "main-svg", width: size.width, height: size.height,
+    viewBox: `0 0 ${size.width} ${size.height}`, "font-family": FONT, "font-size": HEAT_LABEL, fill: colours.ink},
+  makeSvg("defs", {},
+    makeSvg("pattern", {id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"},
+      makeSvg("line", {y2: 7, stroke: colours.hatch, "stroke-width": 2})),
+    makeSvg("linearGradient", {id: "scale"}, CIVIDIS.map((_, i) => makeSvg("stop", {
+      offset: i / (CIVIDIS.length - 1), "stop-color": onCividis(i / (CIVIDIS.length - 1))})))),
+  makeSvg("rect", {width: size.width, height: size.height, fill: colours.surface}),
+  scaleBar(heat, size, colours),
+  heat.panels.map((panel, i) => heatPanel(context, heat, size, panel, i)));
+  return withTips(svg);
+}
+
+/* The colours with their ends and middle, the better end at the right. */
+function scaleBar({measure, bounds: [low, high]}, {width}, colours) {
+  const wide = Math.min(320, width - 60);
+  const left = (width - wide) / 2;
+  const ends = measure.better === "lower" ? [high, (low + high) / 2, low] : [low, (low + high) / 2, high];
+  return makeSvg("g", {},
+    makeSvg("text", {x: width / 2, y: 12, "text-anchor": "middle", "font-weight": 600}, measure.label),
+    makeSvg("rect", {x: left, y: 17, width: wide, height: 9, fill: "url(#scale)"}),
+    ends.map((value, i) => makeSvg("text", {x: left + wide * i / 2, y: 38, "text-anchor": "middle", fill: colours.muted},
+      valueText(measure.key, value))));
+}
+
+function heatPanel(context, heat, size, [norm, matcher], i) {
+  const {detectors, descriptors, columns} = heat;
+  const {cell, left, titled} = size;
+  const x = (i % columns) * (size.panelWidth + 24);
+  const y = size.top + Math.floor(i / columns) * size.panelHeight;
+  const foot = titled + detectors.length * cell.height;
+  return makeSvg("g", {transform: `translate(${x} ${y})`},
+    makeSvg("text", {x: left, y: 15, "font-weight": 650, "font-size": 12.5}, `${norm}, ${matcher}`),
+    detectors.map((detector, line) => makeSvg("text", {x: left - 6, y: titled + (line + 0.5) * cell.height + 4,
+      "text-anchor": "end"}, detector)),
+    descriptors.map((descriptor, column) => makeSvg("text", {"text-anchor": "end",
+      transform: `translate(${left + (column + 0.5) * cell.width + 4} ${foot + 10}) rotate(-55)`}, descriptor)),
+    detectors.flatMap((detector, line) => descriptors.map((descriptor, column) => heatCell(context, heat,
+      [detector, descriptor, norm, matcher].join("-"),
+      {x: left + column * cell.width, y: titled + line * cell.height, ...cell}))));
+}
+
+function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
+  const box = {x: x + 0.5, y: y + 0.5, width: width - 1, height: height - 1};
+  const a = heat.at.get(name);
+  if (a === undefined) {
+    const reason = Object.hasOwn(payload.incompatible ?? {}, name) ? payload.incompatible[name] : null;
+    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\ncannot run: ${reason}`}) : [];
+  }
+  const value = heat.measure.values[a];
+  const tip = heatTip(entry, heat.measure, a);
+  if (!isKnown(value)) return makeSvg("rect", {...box, fill: "none", stroke: colours.grid, "data-tip": tip});
+  const share = heatShare(heat, value);
+  const rect = makeSvg("rect", {...box, fill: onCividis(share), "data-tip": tip});
+  if (width < 24) return rect;
+  return [rect, makeSvg("text", {x: x + width / 2, y: y + height / 2 + 3.5, "text-anchor": "middle", "font-size": 10,
+    fill: isBrightOnScale(share) ? "#000000" : "#ffffff", "pointer-events": "none"}, cellText(value))];
+}
+
+function heatTip(entry, measure, a) {
+  const rank = isKnown(entry.score.rank[a]) ? `\nrank ${entry.score.rank[a]}` : "";
+  return `${entry.combinations[a]}\n${measure.label}: ${valueText(measure.key, measure.values[a])}${rank}`
+    + `\nsucceeds on ${percent(entry.score.success_rate[a])} of the pairs`;
 }
 
 /* At most four characters. */
 function cellText(value) {
-  if (!isKnown(value)) return "";
   if (value >= 10000) return `${Math.round(value / 1000)}k`;
   if (value >= 1000) return `${(value / 1000).toFixed(1)}k`;
   if (value >= 10) return String(Math.round(value));
   return value >= 1 ? value.toFixed(1) : value.toFixed(2).replace(/^0/, "");
 }
 
-function wrapped(text, length = 60) {
-  const lines = [""];
-  for (const word of String(text).split(" ")) {
-    if (lines[lines.length - 1].length + word.length > length) lines.push("");
-    lines[lines.length - 1] += `${word} `;
-  }
-  return lines.map(line => safe(line.trim())).join("<br>");
-}
-
-function placePanel(layout, [norm, matcher], i, {columns, lines, detectors, descriptors, narrow, cell}) {
-  const [line, column] = [Math.floor(i / columns), i % columns];
-  const gap = columns > 1 ? 0.1 : 0;
-  const wide = (1 - gap * (columns - 1)) / columns;
-  const tall = 1 / lines;
-  const top = 1 - line * tall;
-  const bottom = top - tall * (detectors.length * cell / (detectors.length * cell + 84));
-  const suffix = i ? String(i + 1) : "";
-  const left = column * (wide + gap);
-  layout[`xaxis${suffix}`] = {...categoryAxis(descriptors.map(safe)), autorange: true, automargin: false, domain: [left, left + wide],
-    anchor: `y${i + 1}`, tickangle: -60, tickfont: {size: narrow ? 9 : 10}};
-  layout[`yaxis${suffix}`] = {...categoryAxis(detectors.map(safe)), automargin: false, domain: [Math.max(bottom, 0), top],
-    anchor: `x${i + 1}`, tickfont: {size: narrow ? 9 : 10}};
-  layout.annotations.push({text: `<b>${safe(`${norm}, ${matcher}`)}</b>`, xref: "paper", yref: "paper", x: left,
-    y: top, xanchor: "left", yanchor: "bottom", showarrow: false, font: {size: 12}});
+function heatTable({entry, shown: rows}, {measure}) {
+  return [[...CODES, measure.key], rows.filter(a => isKnown(measure.values[a]))
+    .map(a => [...CODES.map(code => entry[code][a]), measure.values[a]])];
 }
 
 function heatSummary(entry, rows, measure) {
   const known = rows.filter(a => isKnown(measure.values[a]));
-  if (!known.length) return `No combination has a value of ${measure.label}`;
   const sign = measure.better === "lower" ? -1 : 1;
   const best = known.reduce((a, b) => (sign * measure.values[b] > sign * measure.values[a] ? b : a));
   return `Best by ${measure.label}: ${entry.combinations[best]}, ${valueText(measure.key, measure.values[best])}`;
