@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -13,6 +14,8 @@ from types import TracebackType
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.report.drawn_matches import DrawnMatches
+
+SECONDS_TO_END = 5.0
 
 
 class DrawingProcess:
@@ -37,7 +40,7 @@ class DrawingProcess:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._stop()
+        self._stop(patience=0 if error else SECONDS_TO_END)
 
     def draw(self, pair_index: int, combination: Combination, timeout: float) -> DrawnMatches | str:
         """The matches of a combination on a pair, or why there are none.
@@ -82,10 +85,12 @@ class DrawingProcess:
         self._pipe.send(self._context)
         return self._pipe
 
-    def _stop(self) -> None:
+    def _stop(self, patience: float = 0) -> None:
         if self._pipe is not None:
             self._pipe.close()
         if self._process is not None:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)  # it ends by itself where nothing is left to do
             self._process.kill()
             self._process.wait()
         self._pipe = self._process = None
