@@ -6,6 +6,7 @@ from pathlib import Path
 
 from aerocues import Results
 from aerocues.report.markdown import summary
+from aerocues.report.payload import payload_of
 from aerocues.report.report import report_entries
 from tests.report.made_up import COMBINATIONS, folder_of, measured
 
@@ -39,3 +40,14 @@ def test_one_pair_promises_nothing(tmp_path: Path) -> None:
     assert "interval" not in text
     assert "better than every other" not in text
     assert "too few pairs to tell it from" in text
+    assert "one pair says nothing of how sure the scores are" in text
+
+
+def test_few_sequences_are_cautioned_about(tmp_path: Path) -> None:
+    rows = measured()
+    for row in rows:
+        row["sequence"] = "ab"[row["pair"] % 2]
+    entries = report_entries([folder_of(rows, tmp_path)], resamples=50)
+    told = "with only 2 sequences the intervals are too narrow"
+    assert told in summary(entries, "Mine")
+    assert told in payload_of(entries, "Mine")["method"]["notes"][0]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from aerocues.evaluation.typesetting import as_markdown
 from aerocues.report.comparison import comparison_of
 from aerocues.report.entry import ReportEntry
-from aerocues.report.scores import GOOD, best_binary, fastest_good
+from aerocues.report.scores import GOOD, best_binary, cautions, fastest_good
 
 if TYPE_CHECKING:
     import polars as pl
@@ -91,8 +91,7 @@ def _others(found: ReportEntry) -> Iterator[str]:
         )
     if binary is not None:
         yield f"- best binary descriptor: `{names[binary]}`"
-    if not ranking.scores.table.by_repeat.all():
-        yield "- of each reconstruction there is one figure: its luck is in no interval"
+    yield from (f"- {caution}" for caution in cautions(ranking))
 
 
 def _listed(names: Sequence[str]) -> str:

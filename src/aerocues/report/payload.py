@@ -12,6 +12,7 @@ from aerocues.report.comparison import comparison_facts, machine_facts
 from aerocues.report.entry import ReportEntry, entry_facts
 from aerocues.report.method import incompatible, method_facts
 from aerocues.report.pictures import Pictures
+from aerocues.report.scores import cautions
 
 
 def payload_of(
@@ -31,6 +32,7 @@ def payload_of(
     """
     version = version_of("aerocues")
     shown = pictures or Pictures()
+    cautioned = [f"{found.name}: {each}" for found in entries for each in cautions(found.ranking)]
     scored = [found.entry for found in entries]
     measured = (name for found in entries for name in found.combinations)
     facts = {
@@ -44,6 +46,6 @@ def payload_of(
         "images": shown.images,
         "pictures": shown.pictures,
         "models": [],
-        "method": method_facts(version, shown.notes),
+        "method": method_facts(version, [*cautioned, *shown.notes]),
     }
     return dict(plain(facts))

@@ -114,3 +114,20 @@ def method_labels(combinations: tuple[str, ...]) -> dict[str, list[str]]:
     """Detector, descriptor, norm and matcher of each combination."""
     parts = np.array([name.split("-") for name in combinations])
     return {method: parts[:, column].tolist() for column, method in enumerate(METHODS)}
+
+
+def cautions(ranking: Ranking) -> list[str]:
+    """What the intervals do not tell."""
+    table, resampled = ranking.scores.table, ranking.resampled
+    blocks = len(set(table.blocks.tolist()))
+    told = []
+    if resampled.units < 2:
+        told.append("one pair says nothing of how sure the scores are")
+    elif resampled.unit != "block" and 1 < blocks < len(table.repeats):
+        told.append(
+            f"pairs of one sequence are alike, so that with only {blocks} sequences the intervals "
+            "are too narrow"
+        )
+    if not table.by_repeat.all():
+        told.append("of each reconstruction there is one figure: its luck is in no interval")
+    return told
