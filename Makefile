@@ -10,6 +10,7 @@ FIND_PYTHON = for name in python3 python3.13 python3.12 python3.11; do \
 	if "$$name" -c '$(SUPPORTED)' 2>/dev/null; then echo "$$name"; break; fi; done
 
 DEMO_RESULTS := demo-results
+DEMO_REPORT := demo-report.html
 DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZE-L2-BF,ORB-ORB-HAM-*,$(\
 	)ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,AGAST-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,$(\
 	)GFTT_H-TEBLID-HAM-BF,STAR-LATCH-HAM-BF,MSER-SIFT-L2-BF
@@ -41,8 +42,9 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	@touch $@
 
-demo: setup ## measure a choice of combinations on the built-in images (under 3 minutes)
+demo: setup ## measure, rank and report a choice of combinations on the built-in images (under 3 minutes)
 	$(BIN)/aerocues run synthetic --max-width 700 -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)
 
 test: setup ## the fast tests
 	$(BIN)/pytest -n 2 -m "not slow" $(PYTEST_ARGUMENTS)

@@ -233,9 +233,10 @@ def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
-def test_the_demonstration_ends_in_a_table(tmp_path: Path) -> None:
+def test_the_demonstration_ends_in_a_table_and_a_report(tmp_path: Path) -> None:
+    places = [f"DEMO_RESULTS={tmp_path / 'results'}", f"DEMO_REPORT={tmp_path / 'report.html'}"]
     done = subprocess.run(
-        ["make", "--silent", "demo", f"DEMO_RESULTS={tmp_path / 'results'}"],
+        ["make", "--silent", "demo", *places],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,
@@ -245,3 +246,5 @@ def test_the_demonstration_ends_in_a_table(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     last_lines = "\n".join(done.stdout.splitlines()[-40:])
     assert re.search(r"[A-Z_]+-[A-Z_]+-(?:L2|HAM)-(?:BF|FLANN)", last_lines)
+    assert str(tmp_path / "report.html") in last_lines
+    assert (tmp_path / "report.html").is_file()
