@@ -47,7 +47,7 @@ function figureContext(figure, width, theme) {
 function describeFigure(figure, context) {
   const reason = figure.available?.(context.entry) ?? true;
   if (reason !== true) return {empty: reason};
-  if (!context.shown.length && !figure.ignoresFilter) return {empty: "No combination passes the filter."};
+  if (!context.shown.length && !figure.ignoresFilter && !figure.acrossEntries) return {empty: "No combination passes the filter."};
   return figure.draw(context);
 }
 
@@ -191,12 +191,19 @@ function unsafe(text) {
 
 /* Marks figures as out of date and draws those near the window, one a frame, those in it first. */
 function refreshFigures(changed) {
-  const own = [...changed].every(key => key.includes("."));
   for (const figure of figures) {
-    if (own && ![...changed].some(key => key.startsWith(`${figure.id}.`))) continue;
-    figure.stale = true;
+    if ([...changed].some(key => concerns(key, figure))) figure.stale = true;
   }
   drawStale();
+}
+
+const OF_THE_TABLE = ["sort", "columns", "rows"];
+
+/* Whether a figure shows what a key of the state stands for. */
+function concerns(key, figure) {
+  if (OF_THE_TABLE.includes(key)) return false;
+  if (key === "q" || CODES.includes(key)) return !figure.ignoresFilter;
+  return !key.includes(".") || key.startsWith(`${figure.id}.`);
 }
 
 let drawing = false;

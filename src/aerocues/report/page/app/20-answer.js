@@ -37,19 +37,22 @@ function verdict(entry) {
 }
 
 function leadSentence(entry) {
-  const {best, probability_best: probability, indistinguishable} = entry.score;
+  const {best, probability_best: probability, indistinguishable, untested = [], units} = entry.score;
   const others = indistinguishable.filter(a => a !== best).length;
   const name = make("strong", {}, entry.combinations[best]);
   if (entry.combinations.length === 1) {
     return [name, " is the only combination measured, so there is nothing to compare it with."];
   }
+  const measured = ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`;
+  if (units === 1) return [name, measured, " A single pair (or scene) says nothing of how sure that is."];
   const sure = isKnown(probability?.[best])
     ? ` It comes first in ${inWords(percent(probability[best]))} of ${resamples(entry)}`
     : " How sure that is cannot be told";
-  const rest = others
-    ? `; ${counted(others, "other")} cannot be told from it.`
-    : "; every other one is significantly worse.";
-  return [name, ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`, sure, rest];
+  const rest = others ? `; ${counted(others, "other")} cannot be told from it`
+    : (untested.length ? "" : "; every other one is significantly worse");
+  const unknown = untested.length
+    ? `; ${untested.length} share too few pairs with it to be compared` : "";
+  return [name, measured, sure, rest, unknown, "."];
 }
 
 function inWords(share) {
@@ -127,7 +130,8 @@ function equalsCard(entry) {
     .sort((a, b) => score.rank[a] - score.rank[b]);
   if (entry.combinations.length < 2) return null;
   if (!equals.length) {
-    const second = ranked(entry)[1];
+    const second = withRank(entry, ranked(entry))[1];
+    if (second === undefined) return null;
     return card("Runner-up", entry.combinations[second], figuresList([
       ...scoreFigures(entry, second),
       ["Differs from the best", isKnown(score.p_value?.[second])

@@ -2,8 +2,8 @@
 
 const HEAT_MAP = {
   id: "heat", title: "Detector and descriptor", wide: true,
-  read: "A panel for each norm and matcher; brighter is better. Hatched cells cannot run (the reason is "
-    + "shown on hover); empty ones were not measured or do not pass the filter.",
+  read: "A panel for each norm and matcher; brighter is better. Hatched cells cannot run or mean nothing (the "
+    + "reason is shown on hover); empty ones were not measured or do not pass the filter.",
   controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
   draw(context) {
     const {entry, narrow, shown: rows, width} = context;
@@ -100,7 +100,7 @@ function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
   const a = heat.at.get(name);
   if (a === undefined) {
     const reason = Object.hasOwn(payload.incompatible ?? {}, name) ? payload.incompatible[name] : null;
-    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\ncannot run: ${reason}`}) : [];
+    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\nleft out: ${reason}`}) : [];
   }
   const value = heat.measure.values[a];
   const tip = heatTip(entry, heat.measure, a);

@@ -10,7 +10,7 @@ function firstMeasure(entry, keys) {
 const PARETO = {
   id: "pareto", title: "Speed against quality", wide: true,
   read: "A point is a combination, by its means over the pairs that did not fail. Points on the line are beaten by none in both "
-    + "measures at once; pick any two.",
+    + "measures at once. Hollow ones failed too often to count there.",
   controls: [
     {name: "x", label: "Across", options: measureOptions,
       fallback: entry => entry.validation?.pareto?.criteria?.[0] ?? firstMeasure(entry, SPEEDS)},
@@ -23,7 +23,8 @@ const PARETO = {
     const [x, y] = [measureOf(entry, option("x")), measureOf(entry, option("y"))];
     const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a]));
     if (!drawn.length) return {empty: "None of these combinations has both values."};
-    const front = paretoFront(drawn, x, y);
+    const sound = drawn.filter(a => isSound(entry, a));
+    const front = paretoFront(sound, x, y);
     const step = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
       x: front.map(a => x.values[a]), y: front.map(a => y.values[a]), line: {color: colours.line, width: 1.5}};
     return {
@@ -31,7 +32,7 @@ const PARETO = {
       height: narrow ? 480 : 560,
       layout: {
         ...scatterFrame(measureAxis(x, drawn), measureAxis(y, drawn), narrow),
-        annotations: frontLabels(context, drawn, front, x, y),
+        annotations: front.length ? frontLabels(context, drawn, front, x, y) : [],
       },
       note: `Not beaten in both: ${front.map(a => entry.combinations[a]).join(", ")}.`,
     };
@@ -59,6 +60,13 @@ function measureAxis(measure, rows) {
   return {title, ...logAxis(values, timed ? duration : shown)};
 }
 
+/* Means leave failed pairs out, so what fails on the hard ones looks good: a success rate near the
+   best score's is asked for. */
+function isSound(entry, a) {
+  const {success_rate: success, best, settings} = entry.score;
+  return !isKnown(success[best]) || success[a] >= (settings?.good ?? 0.9) * success[best];
+}
+
 function isCount(name) {
   return /^(inliers|excess_inliers|matches|keypoints_\d|points_3d)$/.test(name);
 }
@@ -67,10 +75,10 @@ function pointsByMethod(entry, rows, code, x, y, theme) {
   const groups = [...new Set(entry[code])];
   return groups.map((name, i) => {
     const members = rows.filter(a => entry[code][a] === name);
-    const {color, symbol} = seriesStyle(theme, i);
+    const {color, symbol, outline} = seriesStyle(theme, i);
     return {
       type: "scatter", mode: "markers", name: safe(name), x: members.map(a => x.values[a]),
-      y: members.map(a => y.values[a]), ids: names(entry, members), marker: {color, symbol, size: 8, opacity: 0.85},
+      y: members.map(a => y.values[a]), ids: names(entry, members), marker: {color, symbol: members.map(a => (isSound(entry, a) ? symbol : outline)), size: 8, opacity: 0.85},
       hovertext: members.map(a => pointText(entry, a, x, y)), hoverinfo: "text",
     };
   }).filter(trace => trace.x.length);
@@ -79,7 +87,7 @@ function pointsByMethod(entry, rows, code, x, y, theme) {
 function pointText(entry, a, ...measures) {
   return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
     `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`
-    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}`;
+    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, succeeds on ${percent(entry.score.success_rate[a])}`;
 }
 
 function paretoFront(rows, x, y) {

@@ -28,7 +28,7 @@ const SLOPES = {
   controls: [{name: "top", label: "Combinations", fallback: () => "10",
     options: () => [7, 10, 14].map(size => ({key: String(size), label: `most versatile ${size}`}))},
   scaleControl("log")],
-  ignoresFilter: true,
+  acrossEntries: true,
   available: () => (payload.comparison ? true : NO_COMPARISON),
   draw(context) {
     const {option, theme, narrow} = context;

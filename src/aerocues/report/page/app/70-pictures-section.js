@@ -107,7 +107,8 @@ function updatePanel(panel) {
 function pictureWords(picture) {
   if (!picture) return [];
   const {status, ...figuresOf} = picture.figures ?? {};
+  const remark = [picture.role, picture.note].filter(Boolean).map(sentenceCase).join(". ");
   const rows = Object.entries(figuresOf).filter(([, value]) => value !== null && value !== undefined)
     .map(([name, value]) => [sentenceCase(labelOf(name)), typeof value === "number" ? valueText(name, value) : String(value)]);
-  return [figuresList([status ? ["Status", status] : null, ...rows])];
+  return [remark ? make("p", {class: "note"}, `${remark}.`) : "", figuresList([status ? ["Status", status] : null, ...rows])];
 }
