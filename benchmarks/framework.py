@@ -25,7 +25,7 @@ from pathlib import Path
 # All meaningful combinations of four detectors, as a full evaluation has them.
 COMBINATIONS = "AKAZE-*,MSER-*,GFTT_H-*,MSD-*"
 EVEN = {
-    "combinations": "ORB-ORB-HAM-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,BRISK-BRISK-HAM-*,SIFT-SIFT-*",
+    "combinations": "ORB-ORB-HAM-*,AKAZE-AKAZE-*,AKAZE-SIFT-*,BRISK-BRISK-HAM-*,SIFT-SIFT-*",
     "limit": 8,
 }
 RUN = """
