@@ -52,6 +52,11 @@ def test_the_page_is_used_by_keyboard(open_report: Open) -> None:
     assert opened.page.evaluate("document.activeElement.textContent") == "Combination"
     assert opened.rows()[0] == "<b>MINE-ORB-HAM-BF"
     assert "Sorted by Combination" in str(opened.page.text_content("#announcer"))
+    opened.page.focus("#methods-summary")
+    opened.page.keyboard.press("Enter")
+    assert opened.page.locator(".methods .panel").is_visible()
+    opened.page.keyboard.press("Escape")
+    assert opened.page.locator(".methods .panel").is_hidden()
     opened.page.focus('#contents a[href="#method"]')
     opened.page.keyboard.press("Enter")
     assert opened.page.evaluate("document.activeElement.id") == "title-method"
@@ -76,11 +81,16 @@ def test_light_and_dark_follow_the_system_until_chosen(open_report: Open) -> Non
     _wait_for_theme(opened, "light")
 
 
+@pytest.mark.slow
 def test_paper_has_every_figure(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(color_scheme="dark")
     opened.figure("heat")
     opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
     assert opened.page.locator("figure.figure:not(:has(.main-svg))").count() == 0
+    assert opened.page.evaluate("document.documentElement.dataset.theme") == "light"
+    widest = "Math.max(...[...document.querySelectorAll('.main-svg')].map(e => e.clientWidth))"
+    assert opened.page.evaluate(widest) <= 680
     opened.page.evaluate("window.dispatchEvent(new Event('afterprint'))")
+    _wait_for_theme(opened, "dark")
     opened.page.emulate_media(media="print")
     assert opened.page.locator("#toolbar").is_hidden()

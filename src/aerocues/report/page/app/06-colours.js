@@ -26,6 +26,7 @@ const DIVERGING = {
 const darkWanted = window.matchMedia("(prefers-color-scheme: dark)");
 
 function themeName() {
+  if (document.documentElement.classList.contains("printing")) return "light";
   const chosen = state.get("theme");
   return chosen === "light" || chosen === "dark" ? chosen : (darkWanted.matches ? "dark" : "light");
 }

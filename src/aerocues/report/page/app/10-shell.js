@@ -60,9 +60,23 @@ function buildChips() {
         onclick: () => toggleChip(code, name),
       }, name)));
   });
-  return make("details", {class: "methods", id: "methods"},
+  const panel = make("details", {class: "methods", id: "methods"},
     make("summary", {id: "methods-summary"}, "Methods"),
     make("div", {class: "panel"}, groups));
+  closeByLeaving(panel);
+  return panel;
+}
+
+/* Escape, and a click elsewhere, close an open panel. */
+function closeByLeaving(panel) {
+  document.addEventListener("click", event => {
+    if (!panel.contains(event.target)) panel.open = false;
+  });
+  panel.addEventListener("keydown", event => {
+    if (event.key !== "Escape" || !panel.open) return;
+    panel.open = false;
+    panel.querySelector("summary").focus();
+  });
 }
 
 function toggleChip(code, name) {

@@ -165,7 +165,7 @@ function timesAsFast(entry, a) {
 
 function filteredCard(entry) {
   const first = shownIn(entry)[0];
-  if (!isFiltered() || first === undefined || !isKnown(entry.score.rank[first])) return null;
+  if (!isFiltered() || first === undefined || first === entry.score.best || !isKnown(entry.score.rank[first])) return null;
   return card("Best that passes the filter", entry.combinations[first],
     figuresList(scoreFigures(entry, first)), "filtered");
 }

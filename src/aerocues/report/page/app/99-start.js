@@ -24,6 +24,7 @@ function start() {
   document.addEventListener("DOMContentLoaded", drawStale);
   window.addEventListener("beforeprint", drawForPrint);
   window.addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("printing");
     applyTheme();
     for (const figure of figures) figure.stale = true;
     drawStale();
@@ -31,8 +32,10 @@ function start() {
   if (location.hash && !location.hash.includes("=")) goTo(location.hash.slice(1));
 }
 
-/* Paper is light and shows every figure, seen or not. */
+/* Paper is light and narrow, and shows every figure, seen or not. */
 function drawForPrint() {
+  document.documentElement.classList.add("printing");
+  applyTheme();
   for (const figure of figures) drawFigure(figure);
 }
 
