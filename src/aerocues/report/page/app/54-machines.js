@@ -27,8 +27,8 @@ const MACHINES = {
           + `<br>rank correlation ${fixed(row.rank_correlation, 2)}<br>${counted(row.rows, "measurement")}`), hoverinfo: "text"}],
       height: heightOfRows(rows.length * 1.4, 80),
       layout: {showlegend: false, hovermode: "closest", yaxis: categoryAxis([...new Set(rows.map(row => row.label))]),
-        xaxis: {title: safe(known.length > 1 ? "time there / time here" : `time on ${known[0].second} / on ${known[0].first}`), type: "log", tickvals: [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]}},
-      note: both.map(each => `${each.first} and ${each.second}: their rankings by CUES correlate with ${fixed(each.spearman, 3)} (Spearman).`).join(" ")
+        xaxis: {title: "time on the second machine / on the first", type: "log", tickvals: [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]}},
+      note: both.map(each => `First ${each.first}, second ${each.second}: their rankings by CUES correlate with ${fixed(each.spearman, 3)} (Spearman).`).join(" ")
         + known.map(each => ` Rank correlation of the times: ${each.times.map(time => `${time.stage} ${fixed(time.rank_correlation, 2)}`).join(", ")}.`).join(""),
     };
   },
