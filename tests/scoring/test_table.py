@@ -191,3 +191,9 @@ def test_criteria_by_name_keep_their_order() -> None:
 def test_criteria_that_do_not_exist(names: list[str], message: str) -> None:
     with pytest.raises(ScoreError, match=message):
         criteria_named(names)
+
+
+def test_names_that_are_lists_are_refused() -> None:
+    frame = pl.DataFrame({"laptop": [["a"], ["b"]], "price": [1.0, 2.0]})
+    with pytest.raises(ScoreError, match="give plain names"):
+        DecisionTable.from_frame(frame, alternative="laptop", criteria=[Criterion("price")])

@@ -30,6 +30,8 @@ def read_long_form(
     for name in filter(None, keys.values()):
         if name not in frame.columns:
             raise ScoreError(f"there is no column {name!r}; the table has {_columns(frame)}")
+        if frame[name].dtype.is_nested():
+            raise ScoreError(f"the column {name!r} holds {frame[name].dtype}; give plain names")
     labels = frame.select(
         (pl.col(name) if name else pl.lit(ALL)).cast(pl.String).alias(key)
         for key, name in keys.items()
