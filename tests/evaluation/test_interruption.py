@@ -45,6 +45,7 @@ def start(images: Path, results: Path) -> subprocess.Popen[bytes]:
             "TMPDIR": str(results.parent),
         },
         stderr=subprocess.PIPE,
+        start_new_session=True,
     )
 
 
@@ -87,6 +88,19 @@ def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path
     assert_same_rows(rows_of(Results(results).table()), rows_of(undisturbed.table()))
     assert Results(results).status().left == 0
     assert not list(results.rglob("*.tmp"))
+
+
+@pytest.mark.slow
+def test_ending_the_whole_process_group_leaves_no_temporary_folder(tmp_path: Path) -> None:
+    images, results = tmp_path / "images", tmp_path / "results"
+    write_dataset(images, strip(5))
+    process = start(images, results)
+    wait_until(partial(_has, results, 1, process))
+    assert list(tmp_path.glob("aerocues-worker-*"))
+    os.killpg(process.pid, signal.SIGTERM)
+    assert process.wait(20) == -signal.SIGTERM
+    wait_until(lambda: not workers_of(str(images)), 20)
+    assert not list(tmp_path.glob("aerocues-worker-*"))
 
 
 def mount(folder: Path, *options: str) -> None:

@@ -63,8 +63,9 @@ def main() -> None:
     to stay on or -1, and the parent's process id.
     """
     descriptor, page, megabytes, core, parent = sys.argv[1:]
-    # Ctrl-C reaches the whole process group; the parent decides when a worker ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Both reach whole process groups; the parent decides when a worker ends, or its own end does.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
     if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {int(core)})
     _limit_memory(int(megabytes))
