@@ -9,7 +9,7 @@ import pytest
 
 from aerocues.errors import StoreError
 from aerocues.evaluation.results import Results
-from aerocues.evaluation.schema import RECONSTRUCTIONS
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTIONS
 from aerocues.evaluation.store import Store
 
 NAMES = [column.name for column in RECONSTRUCTIONS]

@@ -13,14 +13,16 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.store import PARTS, PLAN, RECONSTRUCTED, RUN, Store
+from aerocues.evaluation.store import CLOUDS, PARTS, PLAN, RECONSTRUCTED, RUN, Store
 from aerocues.evaluation.whole_files import json_content, parquet_content
 
 if TYPE_CHECKING:
     import polars as pl
 
 SINGLE_PART = f"{PARTS}/all.parquet"
-MEMBER = re.compile(rf"{re.escape(PLAN)}|{re.escape(RECONSTRUCTED)}|{RUN}|{PARTS}/[^/]+\.parquet")
+MEMBER = re.compile(
+    rf"{re.escape(PLAN)}|{re.escape(RECONSTRUCTED)}|{RUN}|{PARTS}/[^/]+\.parquet|{CLOUDS}/[^/]+\.npz"
+)
 EARLIEST = (1980, 1, 1, 0, 0, 0)
 # What zipfile raises on damage; RuntimeError stands for encryption.
 BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError)
@@ -53,6 +55,8 @@ def packed(store: Store) -> bytes:
     figures = store.reconstructions()
     found = figures if len(figures) else None
     content = folder_content(store.run(), store.plan(), store.rows(), found)
+    for cloud in store.cloud_files():
+        content[f"{CLOUDS}/{cloud.name}"] = cloud.read_bytes()
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in content.items():

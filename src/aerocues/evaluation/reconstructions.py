@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aerocues.evaluation.schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS, polars_schema
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS
+from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.table_files import (
     TableFile,
     in_columns,

@@ -15,6 +15,8 @@ from aerocues.evaluation.store import Store
 if TYPE_CHECKING:
     import polars as pl
 
+    from aerocues.evaluation.clouds import Cloud
+
 
 @dataclass(frozen=True)
 class RunStatus:
@@ -73,8 +75,12 @@ class Results:
         return self._store.table()
 
     def reconstructions(self) -> pl.DataFrame:
-        """One row a dataset and combination; columns as in `schema.RECONSTRUCTIONS`."""
+        """One row a dataset and combination, see `reconstruction_schema.RECONSTRUCTIONS`."""
         return self._store.reconstructions()
+
+    def cloud(self, row_key: str) -> Cloud | None:
+        """The cloud of the reconstruction whose row has this key; None where there is none."""
+        return self._store.cloud(row_key)
 
     def pack(self, file: str | Path) -> Path:
         """Write everything that the folder holds into one file, for `Results` to open elsewhere.

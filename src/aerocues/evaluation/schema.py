@@ -10,7 +10,6 @@ from aerocues.evaluation.metrics import METRICS, Row
 
 ColumnType = Literal["string", "integer", "float"]
 PIXEL_THRESHOLDS = (1, 3, 5)
-RECONSTRUCTION_IDENTITY = ("dataset", "detector", "descriptor", "norm", "matcher")
 
 
 @dataclass(frozen=True)
@@ -157,17 +156,6 @@ COLUMNS: tuple[Column, ...] = (
     *RESOURCES,
     *PROVENANCE,
 )
-
-# One row a dataset and combination.
-RECONSTRUCTIONS: tuple[Column, ...] = (
-    *(column for column in IDENTITY if column.name in RECONSTRUCTION_IDENTITY),
-    _text("status", "how the reconstruction ended"),
-    _text("message", "the message of an error, or what is unusual"),
-    Column("reprojection_error", "float", "px", "mean reprojection error of the 3D points"),
-    _count("points_3d", "3D points of the model"),
-    Column("reconstruction_seconds", "float", "s", "wall seconds that the reconstruction took"),
-)
-
 
 def empty_row() -> Row:
     """A row with every column, all unknown."""

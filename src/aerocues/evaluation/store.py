@@ -10,10 +10,12 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
+from aerocues.evaluation.clouds import Cloud, read_cloud
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
 from aerocues.evaluation.reconstructions import reconstruction_table
-from aerocues.evaluation.schema import RECONSTRUCTIONS, polars_schema
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTIONS
+from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
 from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
 
@@ -24,8 +26,9 @@ PARTS = "parts"
 RUN = "run.json"
 PLAN = "plan.parquet"
 RECONSTRUCTED = "reconstructions.parquet"
+CLOUDS = "clouds"
 LOCK = ".lock"
-OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, LOCK)
+OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
 LONGEST_LIST = 12
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
 
@@ -111,7 +114,8 @@ class Store:
         return cls(folder)
 
     def _remove_leftovers(self) -> None:
-        for path in [*self._parts.glob("*.tmp"), *self.folder.glob("*.tmp")]:
+        beside = (self._parts, self.folder, self.folder / CLOUDS)
+        for path in [path for folder in beside for path in folder.glob("*.tmp")]:
             path.unlink(missing_ok=True)
 
     def write_rows(self, name: str, rows: Sequence[Row]) -> None:
@@ -168,6 +172,32 @@ class Store:
         return self._collect(
             pl.scan_parquet(file, schema=schema, missing_columns="insert", extra_columns="ignore")
         )
+
+    def write_cloud(self, row_key: str, cloud: Cloud) -> None:
+        """Store the cloud of the reconstruction whose row has this key."""
+        folder = self.folder / CLOUDS
+        folder.mkdir(exist_ok=True)
+        self._write(folder / f"{row_key}.npz", cloud.content())
+
+    def cloud(self, row_key: str) -> Cloud | None:
+        """The cloud of a reconstruction; None where there is none.
+
+        Raises
+        ------
+        StoreError
+            If its file is damaged or cannot be read.
+        """
+        file = self.folder / CLOUDS / f"{row_key}.npz"
+        if not file.is_file():
+            return None
+        try:
+            return read_cloud(file.read_bytes(), file)
+        except OSError as error:
+            raise StoreError(f"cannot read {file}: {error.strerror}; check its access") from error
+
+    def cloud_files(self) -> list[Path]:
+        """The files of all clouds."""
+        return sorted((self.folder / CLOUDS).glob("*.npz"))
 
     def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
         return self.plan() if (self.folder / PLAN).is_file() else empty.clear()

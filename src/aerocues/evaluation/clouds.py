@@ -1,0 +1,103 @@
+"""Sparse clouds of reconstructions with their cameras, as small files beside the measurements."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import StoreError
+
+Float32Array = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """The points and cameras of one model.
+
+    The frame is east, north, up in metres where positions of the images are known; else that of
+    the model.
+
+    Parameters
+    ----------
+    points : (N, 3) float32
+    colours : (N, 3) uint8
+        Red, green, blue; gray where they were not taken from the images.
+    errors : (N,) float32
+        Mean reprojection error in pixels.
+    track_lengths : (N,) int32
+        Images that see the point.
+    distances : (N,) float32
+        To the nearest point of the reference's cloud; NaN where there is none.
+    centres : (C, 3) float32
+        Centres of the cameras.
+    rotations : (C, 3, 3) float32
+        From the camera (x right, y down, z forward) to the frame of the points.
+    names : (C,) str
+        Names of the images.
+    positions : (C, 3) float32
+        True centres, from GPS or known poses; NaN where unknown.
+    view : (3,) float32
+        Focal length, width and height of the first camera in pixels.
+    unit : str
+        ``m``, or ``unit`` where the scale is not known.
+    """
+
+    points: Float32Array
+    colours: NDArray[np.uint8]
+    errors: Float32Array
+    track_lengths: NDArray[np.int32]
+    distances: Float32Array
+    centres: Float32Array
+    rotations: Float32Array
+    names: NDArray[np.str_]
+    positions: Float32Array
+    view: Float32Array
+    unit: str
+
+    def __post_init__(self) -> None:
+        count, cameras = len(self.points), len(self.centres)
+        shapes = {
+            "points": (count, 3),
+            "colours": (count, 3),
+            "errors": (count,),
+            "track_lengths": (count,),
+            "distances": (count,),
+            "centres": (cameras, 3),
+            "rotations": (cameras, 3, 3),
+            "names": (cameras,),
+            "positions": (cameras, 3),
+            "view": (3,),
+        }
+        for name, shape in shapes.items():
+            if getattr(self, name).shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, not {getattr(self, name).shape}")
+
+    def with_distances(self, distances: NDArray[np.floating[Any]]) -> Cloud:
+        """The same cloud with other distances to a reference."""
+        return replace(self, distances=np.asarray(distances, np.float32))
+
+    def content(self) -> bytes:
+        """The cloud as the content of a file; the same cloud gives the same bytes."""
+        file = io.BytesIO()
+        arrays = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
+        np.savez_compressed(file, **arrays)  # zip entries without a date
+        return file.getvalue()
+
+
+def read_cloud(content: bytes, where: str | Path) -> Cloud:
+    """The cloud in the content of a file; StoreError where it is damaged."""
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+            found = {field.name: arrays[field.name] for field in fields(Cloud)}
+            return Cloud(**{**found, "unit": str(found["unit"])})
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise StoreError(
+            f"{where} is damaged ({error}); remove it and run 'aerocues reconstruct' again"
+        ) from error
