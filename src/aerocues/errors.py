@@ -33,3 +33,7 @@ class EngineError(AerocuesError):
 
 class ScoreError(AerocuesError):
     """A table cannot be scored or compared as asked."""
+
+
+class ReconstructionError(AerocuesError):
+    """A scene cannot be reconstructed as asked."""

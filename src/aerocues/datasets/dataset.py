@@ -57,6 +57,51 @@ class GpsPosition:
     altitude: float | None = None
 
 
+class DepthSource(Protocol):
+    """Where the true depth of an image comes from."""
+
+    def read(self) -> NDArray[np.float32]:
+        """Planar depth: (H, W) float32 metres along the viewing axis; not finite where unknown.
+
+        Raises
+        ------
+        ImageError
+            If it cannot be read.
+        """
+
+
+@dataclass(frozen=True)
+class PinholeCamera:
+    """A camera without distortion, in pixels; the centre of the top-left pixel is (0, 0)."""
+
+    width: int
+    height: int
+    focal_x: float
+    focal_y: float
+    centre_x: float
+    centre_y: float
+
+
+@dataclass(frozen=True, eq=False)
+class TrueView:
+    """What is known to be true of an image.
+
+    Parameters
+    ----------
+    camera : PinholeCamera
+    rotation : (3, 3) float64
+        From the world to the camera: x right, y down, z forward.
+    centre : (3,) float64
+        Centre of the camera in the world, metres.
+    depth : DepthSource or None
+    """
+
+    camera: PinholeCamera
+    rotation: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    depth: DepthSource | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Image:
     """One image of a dataset; pixels are decoded on demand.
@@ -67,6 +112,7 @@ class Image:
     name: str
     source: ImageSource
     gps: GpsPosition | None = None
+    truth: TrueView | None = None
 
     def read(self) -> Pixels:
         return self.source.read()

@@ -7,11 +7,12 @@ from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 
+from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.rows import failed_rows
 from aerocues.evaluation.unit import Context, StageCall, Unit, split
-from aerocues.evaluation.worker_process import Loss, WorkerProcess
+from aerocues.evaluation.worker_process import WorkerProcess
 
 POLL_SECONDS = 0.2
 
@@ -91,7 +92,7 @@ class _Pool:
         ready = wait([worker.pipe for worker in self.busy], POLL_SECONDS)
         for worker in list(self.busy):
             if worker.pipe in ready:
-                rows = worker.receive()
+                rows = worker.rows()
                 if isinstance(rows, list):
                     yield self._advance(worker, rows), []
                     continue

@@ -157,6 +157,7 @@ COLUMNS: tuple[Column, ...] = (
     *PROVENANCE,
 )
 
+
 def empty_row() -> Row:
     """A row with every column, all unknown."""
     return {column.name: None for column in COLUMNS}

@@ -7,14 +7,15 @@ import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
 from aerocues.evaluation.clouds import Cloud, read_cloud
+from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
-from aerocues.evaluation.reconstructions import reconstruction_table
 from aerocues.evaluation.reconstruction_schema import RECONSTRUCTIONS
+from aerocues.evaluation.reconstructions import reconstruction_table
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
 from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
@@ -27,7 +28,6 @@ RUN = "run.json"
 PLAN = "plan.parquet"
 RECONSTRUCTED = "reconstructions.parquet"
 CLOUDS = "clouds"
-LOCK = ".lock"
 OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
 LONGEST_LIST = 12
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
@@ -78,23 +78,9 @@ class Store:
         StoreError
             If another process is writing to the folder.
         """
-        with self._lock_file() as file:
-            if not _locked(file):
-                raise StoreError(
-                    f"another run is writing to {self.folder}; wait for it or give -o another "
-                    "folder"
-                )
+        with folder_lock(self.folder):
             self._remove_leftovers()
             yield
-
-    def _lock_file(self) -> IO[str]:
-        try:
-            return (self.folder / LOCK).open("w")
-        except OSError as error:
-            raise StoreError(
-                f"cannot write to {self.folder}: {error.strerror}; make room or access, or choose "
-                "another folder with -o"
-            ) from error
 
     @classmethod
     def open(cls, folder: Path) -> Store:
@@ -308,16 +294,3 @@ class Store:
                 f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
                 "remove the damaged part and run the same command again"
             ) from error
-
-
-def _locked(file: IO[str]) -> bool:
-    """Whether the lock could be had; it goes with the file or the process."""
-    try:
-        import fcntl
-    except ImportError:
-        return True  # no such locks on this system
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True

@@ -1,48 +1,21 @@
 """The process that evaluates units: ``python -m aerocues.evaluation.worker``.
 
-It receives a context and then units over a pipe, and sends their rows back. It is started anew
-rather than forked, so that callers need no ``__main__`` guard and threads of theirs do no harm.
+It receives a context and then units over a pipe, and sends their rows back.
 """
 
 from __future__ import annotations
 
-import os
-import shutil
-import signal
-import sys
-import threading
-import time
 from multiprocessing.connection import Connection
-from pathlib import Path
 
-PARENT_CHECK_SECONDS = 0.5
-
-
-def _limit_memory(megabytes: int) -> None:
-    """Make allocations beyond the limit fail, so that they are reported rather than killed."""
-    try:
-        import resource
-    except ImportError:
-        return  # no such limit on this system; the parent watches the resident set anyway
-    limit = megabytes * 1024 * 1024
-    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+from aerocues.evaluation.child import run_child
+from aerocues.evaluation.heartbeat import Heartbeat
 
 
-def _end_with_parent(parent: int, folder: Path) -> None:
-    """End this process soon after its parent, however that ended: nobody waits for the rows."""
-    while os.getppid() == parent:
-        time.sleep(PARENT_CHECK_SECONDS)
-    shutil.rmtree(folder, ignore_errors=True)  # else the parent would have done it
-    os._exit(1)
-
-
-def serve(pipe: Connection, page: Path) -> None:
+def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     """Evaluate units until the parent closes the pipe."""
     # Takes long enough for the parent to be gone meanwhile: the watch over it stands already.
     from aerocues.evaluation.evaluator import Evaluator
-    from aerocues.evaluation.heartbeat import Heartbeat
 
-    heartbeat = Heartbeat(page)
     context = pipe.recv()
     evaluator = Evaluator(context, heartbeat.announce)
     pipe.send("ready")
@@ -56,29 +29,5 @@ def serve(pipe: Connection, page: Path) -> None:
             pipe.send(rows)
 
 
-def main() -> None:
-    """Entry point; `WorkerProcess` gives the arguments.
-
-    They are the file descriptor of the pipe, the heartbeat file, the memory limit in MB, the core
-    to stay on or -1, and the parent's process id.
-    """
-    descriptor, page, megabytes, core, parent = sys.argv[1:]
-    # Both reach whole process groups; the parent decides when a worker ends, or its own end does.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)
-    if int(core) >= 0 and hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {int(core)})
-    _limit_memory(int(megabytes))
-    watch = threading.Thread(
-        target=_end_with_parent, args=[int(parent), Path(page).parent], daemon=True
-    )
-    watch.start()
-    try:
-        with Connection(int(descriptor)) as pipe:
-            serve(pipe, Path(page))
-    finally:
-        shutil.rmtree(Path(page).parent, ignore_errors=True)
-
-
 if __name__ == "__main__":
-    main()
+    run_child(serve)
