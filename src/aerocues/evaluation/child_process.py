@@ -151,8 +151,7 @@ class ChildProcess:
         if used > timeout:
             return Loss(
                 "timeout",
-                f"{beat.call} used more than {timeout:g} CPU seconds "
-                f"({self._timeout_option})",
+                f"{beat.call} used more than {timeout:g} CPU seconds ({self._timeout_option})",
                 beat.call,
             )
         if elapsed > timeout and used < IDLE_SHARE * elapsed:

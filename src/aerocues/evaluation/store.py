@@ -14,7 +14,7 @@ from aerocues.evaluation.clouds import Cloud, read_cloud
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
-from aerocues.evaluation.reconstruction_schema import RECONSTRUCTIONS
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS
 from aerocues.evaluation.reconstructions import reconstruction_table
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
@@ -146,6 +146,24 @@ class Store:
             is missing is unknown in all rows.
         """
         self._write(self.folder / RECONSTRUCTED, parquet_content(reconstruction_table(figures)))
+
+    def add_reconstructions(self, figures: pl.DataFrame) -> None:
+        """Add figures of one dataset; those of other settings go, as they are not comparable.
+
+        Parameters
+        ----------
+        figures : pl.DataFrame
+            Of one dataset and under one ``settings_key``.
+        """
+        import polars as pl
+
+        new = reconstruction_table(figures)
+        same = (pl.col("dataset") == new["dataset"][0]) & (
+            (pl.col("settings_key") != new["settings_key"][0]) | pl.col("settings_key").is_null()
+        )
+        kept = self.reconstructions().filter(~same)
+        kept = kept.join(new, on=RECONSTRUCTION_IDENTITY, how="anti")
+        self.write_reconstructions(pl.concat([kept, new]))
 
     def reconstructions(self) -> pl.DataFrame:
         """The figures of 3D reconstructions, by dataset and combination; often none."""

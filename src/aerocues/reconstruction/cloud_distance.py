@@ -1,0 +1,67 @@
+"""Distances between clouds, as CloudCompare's cloud-to-cloud distance: to the nearest point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.evaluation.clouds import Cloud
+from aerocues.evaluation.metrics import Row
+from aerocues.reconstruction.alignment import root_mean_square, similarity
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CloudDistances:
+    """Distances in the frame of the reference, of each point of either cloud to the other."""
+
+    to_reference: Array
+    from_reference: Array
+
+    def figures(self) -> Row:
+        """Median, root mean square and 95th percentile, both ways."""
+        return {
+            **_statistics("cloud_distance", self.to_reference),
+            **_statistics("reference_distance", self.from_reference),
+        }
+
+
+def _statistics(name: str, distances: Array) -> Mapping[str, float]:
+    return {
+        f"{name}_median": float(np.median(distances)),
+        f"{name}_rms": root_mean_square(distances),
+        f"{name}_p95": float(np.quantile(distances, 0.95)),
+    }
+
+
+def cloud_distances(cloud: Cloud, reference: Cloud) -> CloudDistances | None:
+    """Align a cloud with another by the centres of the cameras that both have, and measure.
+
+    Parameters
+    ----------
+    cloud, reference : Cloud
+
+    Returns
+    -------
+    CloudDistances or None
+        None where fewer than three cameras are shared, these lie on a line, or a cloud is empty.
+    """
+    from scipy.spatial import cKDTree
+
+    shared, mine, theirs = np.intersect1d(cloud.names, reference.names, return_indices=True)
+    if not len(shared) or not len(cloud.points) or not len(reference.points):
+        return None
+    place = similarity(
+        cloud.centres[mine].astype(np.float64), reference.centres[theirs].astype(np.float64)
+    )
+    if place is None:
+        return None
+    points = place.apply(cloud.points.astype(np.float64))
+    others = reference.points.astype(np.float64)
+    return CloudDistances(
+        np.asarray(cKDTree(others).query(points)[0]), np.asarray(cKDTree(points).query(others)[0])
+    )

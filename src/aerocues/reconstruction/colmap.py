@@ -1,0 +1,65 @@
+"""Where the versions of pycolmap differ. It can end the process: import it in a child only."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ReconstructionError
+
+Array = NDArray[np.float64]
+UPGRADE = "install a newer one: pip install --upgrade pycolmap"
+
+
+def quiet() -> None:
+    """Keep COLMAP's own log to what ends it."""
+    import pycolmap
+
+    pycolmap.logging.minloglevel = 2
+    pycolmap.logging.stderrthreshold = 2
+
+
+def open_database(file: Path) -> Any:
+    """A database, made where it is missing."""
+    import pycolmap
+
+    opened = getattr(pycolmap.Database, "open", None)
+    if opened is not None and _major_minor() >= (3, 13):
+        return opened(file)
+    older: Any = pycolmap.Database
+    return older(str(file))
+
+
+def _major_minor() -> tuple[int, int]:
+    import pycolmap
+
+    major, minor = pycolmap.__version__.split(".")[:2]
+    return int(major), int(minor)
+
+
+def require(name: str, purpose: str) -> Any:
+    """A function of pycolmap; ReconstructionError where this version lacks it."""
+    import pycolmap
+
+    found = getattr(pycolmap, name, None)
+    if found is None:
+        raise ReconstructionError(
+            f"pycolmap {pycolmap.__version__} has no {name}, which {purpose} needs; {UPGRADE}"
+        )
+    return found
+
+
+def registered(model: Any) -> list[Any]:
+    """The images of a model that have a pose, by name."""
+    images = [image for image in model.images.values() if image.has_pose]
+    return sorted(images, key=lambda image: str(image.name))
+
+
+def camera_from_world(image: Any) -> tuple[Array, Array]:
+    """Rotation (3, 3) and translation (3,) from the model's frame to the camera."""
+    pose = image.cam_from_world
+    matrix = np.asarray((pose() if callable(pose) else pose).matrix(), np.float64)
+    return matrix[:, :3], matrix[:, 3]

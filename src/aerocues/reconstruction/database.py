@@ -1,0 +1,87 @@
+"""The database that COLMAP reconstructs from, and that its own program opens."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.reconstruction.colmap import open_database
+from aerocues.reconstruction.images import HALF_PIXEL
+from aerocues.reconstruction.matched_scene import MatchedScene, Names
+from aerocues.reconstruction.scene import Scene
+
+
+def write_database(
+    file: Path, scene: Scene, matched: MatchedScene, linked: list[Names]
+) -> dict[str, int]:
+    """Make the database anew: cameras, images, keypoints, and the matches of linked pairs.
+
+    A file that is there, whole or damaged, is replaced.
+
+    Returns
+    -------
+    dict of str to int
+        COLMAP's numbers of the images.
+    """
+    for old in file.parent.glob(f"{file.name}*"):  # also what SQLite keeps beside it
+        old.unlink()
+    open_database(file).close()
+    _import_images(file, scene)
+    database = open_database(file)
+    try:
+        numbers = {str(image.name): int(image.image_id) for image in database.read_all_images()}
+        for name, keypoints in matched.keypoints.items():
+            database.write_keypoints(numbers[name], _rows(keypoints))
+        for first, second in linked:
+            indices = matched.pairs[first, second].indices.astype(np.uint32)
+            database.write_matches(numbers[first], numbers[second], indices)
+    finally:
+        database.close()
+    return numbers
+
+
+def _import_images(file: Path, scene: Scene) -> None:
+    import pycolmap
+
+    for group in scene.cameras:
+        options = pycolmap.ImageReaderOptions()
+        options.camera_model = group.model
+        options.camera_params = ", ".join(f"{value:.17g}" for value in group.parameters)
+        pycolmap.import_images(
+            file, scene.images, pycolmap.CameraMode.SINGLE, list(group.names), options
+        )
+
+
+def _rows(keypoints: Any) -> NDArray[np.float32]:
+    """Position (COLMAP's pixel centre is (0.5, 0.5)), scale, orientation in radians."""
+    return np.column_stack(
+        [
+            keypoints.xy + np.float32(HALF_PIXEL),
+            keypoints.size / 2,
+            np.radians(np.maximum(keypoints.angle, 0)),
+        ]
+    ).astype(np.float32)
+
+
+def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]:
+    """Inliers of each verified pair of images."""
+    import pycolmap
+
+    names = {number: name for name, number in numbers.items()}
+    owner: Any = pycolmap if hasattr(pycolmap, "pair_id_to_image_pair") else pycolmap.Database
+    split = owner.pair_id_to_image_pair
+    database = open_database(file)
+    try:
+        pair_ids, geometries = database.read_two_view_geometries()
+    finally:
+        database.close()
+    found = {}
+    for pair_id, geometry in zip(pair_ids, geometries, strict=True):
+        first, second = split(pair_id)
+        if len(geometry.inlier_matches):
+            found[names[first], names[second]] = len(geometry.inlier_matches)
+    return found

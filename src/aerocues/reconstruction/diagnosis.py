@@ -1,0 +1,151 @@
+"""Why there is no model, or not the one that was wanted, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from aerocues.evaluation.metrics import Row
+from aerocues.reconstruction.colmap import open_database
+from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
+from aerocues.reconstruction.matched_scene import Names
+from aerocues.reconstruction.protocol import Requirements
+
+# What COLMAP asks of the pair that a model begins with, after it has relaxed its demands twice.
+INITIAL_INLIERS = 25
+INITIAL_ANGLE = 4.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A row of `reconstruction_schema.RECONSTRUCTION_STATUSES`, and why."""
+
+    status: str
+    message: str | None = None
+
+
+def without_features(counts: Mapping[str, int]) -> Outcome | None:
+    """Whether too few images have keypoints."""
+    empty = [name for name, count in counts.items() if not count]
+    if len(counts) - len(empty) >= 2:
+        return None
+    return Outcome("no_features", f"{len(empty)} of {len(counts)} images have no keypoints")
+
+
+def without_links(pairs: int, linked: int, verified: int) -> Outcome | None:
+    """Whether no pair of images is verified."""
+    if verified:
+        return None
+    if linked:
+        return Outcome(
+            "no_verified_pair", f"COLMAP verified none of the {linked} pairs that beat chance"
+        )
+    return Outcome("no_verified_pair", f"none of {pairs} pairs has matches that beat chance")
+
+
+def without_model(
+    database: Path, inliers: Mapping[Names, int], numbers: Mapping[str, int]
+) -> Outcome:
+    """Why the mapper made no model at all."""
+    angles = _angles(database, inliers, numbers)
+    most = max(inliers, key=lambda pair: (inliers[pair], pair))
+    enough = [pair for pair in inliers if inliers[pair] >= INITIAL_INLIERS]
+    asks = f"COLMAP asks for {INITIAL_INLIERS} inliers and {INITIAL_ANGLE:g} degrees"
+    if not enough:
+        told = f"the best pair ({_pair(most)}) has {inliers[most]} inliers"
+        return Outcome("no_initial_pair", f"no pair to begin with: {told}; {asks}")
+    widest = max(enough, key=lambda pair: (angles[pair], pair))
+    told = (
+        f"the pair with most inliers ({_pair(most)}) has {inliers[most]} at {angles[most]:.1f} "
+        f"degrees, the widest angle ({_pair(widest)}) is {angles[widest]:.1f} with "
+        f"{inliers[widest]}"
+    )
+    if angles[widest] < INITIAL_ANGLE:
+        return Outcome("no_initial_pair", f"no pair to begin with: {told}; {asks}")
+    return Outcome("no_model", f"no pair could be extended to a model: {told}")
+
+
+def _pair(names: Names) -> str:
+    return " and ".join(names)
+
+
+def _angles(
+    database: Path, inliers: Mapping[Names, int], numbers: Mapping[str, int]
+) -> dict[Names, float]:
+    """Median triangulation angle of each verified pair in degrees; 0 where it has no pose."""
+    import pycolmap
+
+    opened = open_database(database)
+    try:
+        cameras = {camera.camera_id: camera for camera in opened.read_all_cameras()}
+        images = {image.image_id: image for image in opened.read_all_images()}
+        found = {}
+        for names in inliers:
+            first, second = (images[numbers[name]] for name in names)
+            geometry = opened.read_two_view_geometry(first.image_id, second.image_id)
+            points = [_xy(opened.read_keypoints(image.image_id)) for image in (first, second)]
+            has_pose = pycolmap.estimate_two_view_geometry_pose(
+                cameras[first.camera_id], points[0], cameras[second.camera_id], points[1], geometry
+            )
+            found[names] = float(np.degrees(geometry.tri_angle)) if has_pose else 0.0
+    finally:
+        opened.close()
+    return found
+
+
+def _xy(keypoints: Any) -> Any:
+    return np.asarray(keypoints, np.float64)[:, :2]
+
+
+def judged(
+    row: Row,
+    images: list[str],
+    in_model: list[str],
+    inliers: Mapping[Names, int],
+    requirements: Requirements,
+) -> Outcome:
+    """Whether a model is whole and in its place.
+
+    Parameters
+    ----------
+    row : Row
+        Its figures.
+    images, in_model : list of str
+        All images of the scene, and those of the model.
+    inliers : mapping of pairs to int
+        Of the verified pairs.
+    requirements : Requirements
+    """
+    if len(in_model) < requirements.registered_share * len(images):
+        return Outcome("incomplete", _incomplete(images, in_model, inliers))
+    share, metres = row.get("position_error_share"), row.get("position_rmse")
+    if share is not None and metres is not None and share > requirements.position_error_share:
+        floor = requirements.position_error_metres if row["truth"] == "gps" else 0.0
+        if metres > floor:
+            return Outcome(
+                "misplaced",
+                f"the cameras are {metres:.1f} m (root mean square) from their true positions, "
+                f"{100 * share:.0f} % of the extent of the scene: the model is bent or wrongly "
+                "joined",
+            )
+    if len(in_model) < len(images):
+        return Outcome("ok", _incomplete(images, in_model, inliers))
+    return Outcome("ok")
+
+
+def _incomplete(images: list[str], in_model: list[str], inliers: Mapping[Names, int]) -> str:
+    held = f"the model holds {len(in_model)} of {len(images)} images"
+    parts = parts_of(images, inliers)
+    if len(parts) > 1:
+        return f"{held}; the graph of verified pairs falls into {told_parts(parts)}"
+    missing = [name for name in images if name not in set(in_model)]
+    best = []
+    for name in missing[:LISTED]:
+        links = [count for pair, count in inliers.items() if name in pair]
+        best.append(f"{name} ({len(links)} pairs, at most {max(links)} inliers)")
+    more = ", ..." if len(missing) > LISTED else ""
+    return f"{held}, though the graph of verified pairs is whole; left out: {', '.join(best)}{more}"

@@ -1,0 +1,143 @@
+"""Child processes that reconstruct, one a combination, some at a time."""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass, field
+from multiprocessing.connection import wait
+
+from aerocues.errors import AerocuesError
+from aerocues.evaluation.child_process import ChildProcess, Loss
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.unit import StageCall
+from aerocues.methods.combination import Combination
+from aerocues.reconstruction.images import Prepared
+from aerocues.reconstruction.scene import Scene
+
+POLL_SECONDS = 0.2
+Doing = tuple[StageCall | None, float]
+Watch = Callable[[Sequence[Doing]], None]
+Group = collections.deque[Combination]
+
+
+@dataclass(frozen=True)
+class ReconstructionLimits:
+    """What a child process may use.
+
+    Parameters
+    ----------
+    workers : int
+        Processes at a time.
+    seconds : float
+        CPU seconds of features of one image, matches of one pair, verification, and mapping each;
+        and wall seconds that one of them may sit idle.
+    memory_limit_mb : int
+        Memory of one process.
+    """
+
+    workers: int
+    seconds: float
+    memory_limit_mb: int
+
+
+def _child(scene: Scene, limits: ReconstructionLimits) -> ChildProcess:
+    return ChildProcess(
+        "aerocues.reconstruction.worker",
+        scene,
+        memory_limit_mb=limits.memory_limit_mb,
+        timeout_option="--time-limit",
+    )
+
+
+def prepare_images(
+    scene: Scene, limits: ReconstructionLimits, progress: Callable[[int, int], None]
+) -> list[Prepared]:
+    """Put all images into the folder of the scene, in a child process.
+
+    Raises
+    ------
+    AerocuesError
+        If an image cannot be read or written.
+    """
+    prepared: list[Prepared] = []
+    child = _child(scene, limits)
+    try:
+        for image in scene.dataset.images:
+            child.send(image.name)
+            found = child.receive()
+            if isinstance(found, Exception):
+                raise found
+            if isinstance(found, Loss):
+                raise AerocuesError(f"{image.name}: {found.message}; take it out of the folder")
+            prepared.append(found)
+            progress(len(prepared), len(scene.dataset.images))
+    finally:
+        child.stop()
+    return prepared
+
+
+def in_groups(combinations: Iterable[Combination]) -> list[Group]:
+    """Combinations with the same detector and descriptor together: they share their features."""
+    groups: dict[tuple[str, str], Group] = {}
+    for each in combinations:
+        groups.setdefault((each.detector, each.descriptor), collections.deque()).append(each)
+    return list(groups.values())
+
+
+@dataclass(eq=False)
+class _Lane:
+    """One process and the group whose combinations it works on, one after the other."""
+
+    group: Group
+    child: ChildProcess
+    combination: Combination = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.combination = self.group.popleft()
+        self.child.send(self.combination)
+
+
+def run_reconstructions(
+    scene: Scene, groups: Sequence[Group], limits: ReconstructionLimits, watch: Watch
+) -> Generator[tuple[Combination, Row, bool], None, None]:
+    """Reconstruct all groups.
+
+    Yields
+    ------
+    tuple of Combination, dict, bool
+        What a reconstruction came to, whatever happened to its process; and whether it was the
+        last of its group.
+    """
+    queue = collections.deque(groups)
+    lanes: list[_Lane] = []
+    try:
+        while queue or lanes:
+            while queue and len(lanes) < limits.workers:
+                lanes.append(_Lane(queue.popleft(), _child(scene, limits)))
+            watch([lane.child.doing() for lane in lanes])
+            ready = wait([lane.child.pipe for lane in lanes], POLL_SECONDS)
+            for lane in list(lanes):
+                if lane.child.pipe in ready:
+                    found = lane.child.receive()
+                elif (found := lane.child.overrun(limits.seconds)) is None:
+                    continue
+                lane.child.stop()
+                lanes.remove(lane)
+                if lane.group:
+                    queue.appendleft(lane.group)
+                yield lane.combination, _row_of(found), not lane.group
+    finally:
+        for lane in lanes:
+            lane.child.stop()
+
+
+def _row_of(found: object) -> Row:
+    if isinstance(found, Loss):
+        return {"status": found.status, "message": found.message}
+    if isinstance(found, AerocuesError):
+        return {"status": "error", "message": str(found)}
+    if isinstance(found, Exception):
+        raise found
+    assert isinstance(found, dict)
+    return found

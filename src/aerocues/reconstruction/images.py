@@ -1,0 +1,130 @@
+"""Images as COLMAP and others read them, and the cameras that took them."""
+
+from __future__ import annotations
+
+import shutil
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+
+from aerocues.datasets.dataset import Dataset, Image, PinholeCamera
+from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.header import read_header
+from aerocues.errors import ImageError, ReconstructionError
+from aerocues.reconstruction.protocol import ReconstructionProtocol
+from aerocues.reconstruction.scene import CameraGroup
+
+JPEG_QUALITY = 95
+HALF_PIXEL = 0.5
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The size of an image as it is measured, and its focal length in pixels, if EXIF tells."""
+
+    name: str
+    width: int
+    height: int
+    focal_length: float | None
+
+
+def prepare_image(image: Image, folder: Path) -> Prepared:
+    """Put an image into a folder as it is measured, and find the focal length in its EXIF data.
+
+    Raises
+    ------
+    ImageError
+        If it cannot be read or written.
+    """
+    pixels = image.read()
+    height, width = pixels.bgr.shape[:2]
+    target = folder / image.name
+    target.parent.mkdir(parents=True, exist_ok=True)
+    source = image.source
+    if isinstance(source, FileSource) and _as_it_is(source):
+        shutil.copyfile(source.path, target)
+    elif not cv2.imwrite(str(target), pixels.bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
+        raise ImageError(f"cannot write {target}; make room or choose another folder with -o")
+    focal_length = None
+    if isinstance(source, FileSource):
+        focal_length = _exif_focal_length(source, max(width, height))
+    return Prepared(image.name, width, height, focal_length)
+
+
+def _as_it_is(source: FileSource) -> bool:
+    """Whether the file itself has the pixels that are measured."""
+    header = read_header(source.path, str(source.path))
+    shrunk = source.max_width is not None and header.size[0] > source.max_width
+    return not shrunk and source.equalize == "none" and header.orientation == 1
+
+
+def _exif_focal_length(source: FileSource, longer_side: int) -> float | None:
+    """The focal length that COLMAP reads out of EXIF, at the size that is measured."""
+    import pycolmap
+
+    try:
+        camera = pycolmap.infer_camera_from_image(str(source.path))
+    except (ValueError, RuntimeError):
+        return None  # a format that COLMAP does not know has no focal length for it
+    if not camera.has_prior_focal_length:
+        return None
+    return float(camera.mean_focal_length() * longer_side / max(camera.width, camera.height))
+
+
+def cameras_of(
+    dataset: Dataset, prepared: list[Prepared], protocol: ReconstructionProtocol
+) -> tuple[CameraGroup, ...]:
+    """The cameras of a scene: one for images of the same size and focal length.
+
+    Raises
+    ------
+    ReconstructionError
+        If intrinsics are to stay fixed and are not known.
+    """
+    groups: defaultdict[tuple[Any, ...], list[str]] = defaultdict(list)
+    unknown = []
+    for each in prepared:
+        truth = dataset.image(each.name).truth
+        if truth is not None:
+            found = _true_camera(truth.camera)
+        else:
+            focal_length = protocol.focal_length or each.focal_length
+            source = "given" if protocol.focal_length else "EXIF"
+            found = _camera_of_size(each, focal_length, source)
+            if focal_length is None:
+                unknown.append(each.name)
+        groups[(each.width, each.height, *found)].append(each.name)
+    if unknown and protocol.intrinsics == "fixed":
+        raise ReconstructionError(
+            f"the focal length of {len(unknown)} of {len(prepared)} images is not known "
+            f"({unknown[0]}, ...); give --focal-length PIXELS, or let the mapper estimate it with "
+            "--intrinsics refine"
+        )
+    return tuple(
+        CameraGroup(model, parameters, source, tuple(names))
+        for (_, _, model, parameters, source), names in groups.items()
+    )
+
+
+def _camera_of_size(
+    image: Prepared, focal_length: float | None, source: str
+) -> tuple[str, tuple[float, ...], str]:
+    if focal_length is None:
+        return "SIMPLE_RADIAL", (), "guessed"
+    return "SIMPLE_RADIAL", (focal_length, image.width / 2, image.height / 2, 0.0), source
+
+
+def _true_camera(camera: PinholeCamera) -> tuple[str, tuple[float, ...], str]:
+    return (
+        "PINHOLE",
+        (
+            camera.focal_x,
+            camera.focal_y,
+            camera.centre_x + HALF_PIXEL,
+            camera.centre_y + HALF_PIXEL,
+        ),
+        "truth",
+    )

@@ -1,0 +1,126 @@
+"""A folder of models: one folder a combination, and what was asked for."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aerocues.errors import StoreError
+from aerocues.evaluation.clouds import Cloud, read_cloud
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES
+from aerocues.evaluation.reconstructions import reconstruction_table
+from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
+from aerocues.methods.combination import Combination
+from aerocues.reconstruction.one_model import CLOUD, PICTURE
+from aerocues.reconstruction.scene import FEATURES, IMAGES
+
+if TYPE_CHECKING:
+    import polars as pl
+
+SETTINGS = "reconstruction.json"
+OUTCOME = "outcome.json"
+TABLE, TABLE_TEXT = "reconstructions.parquet", "reconstructions.csv"
+RETRIED = tuple(status.name for status in RECONSTRUCTION_STATUSES if status.retried)
+
+
+class Models:
+    """The models of a scene in a folder.
+
+    Parameters
+    ----------
+    folder : path
+        As `aerocues.reconstruct` made it.
+
+    Raises
+    ------
+    StoreError
+        If it is no such folder.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / SETTINGS).is_file():
+            raise StoreError(
+                f"{self.folder} is no folder of models (it has no {SETTINGS}); make one with "
+                f"'aerocues reconstruct DATASET -o {self.folder}'"
+            )
+
+    @classmethod
+    def create(cls, folder: Path) -> None:
+        """Make the folder where it is missing.
+
+        Raises
+        ------
+        StoreError
+            If it cannot be made, is a file or holds something else.
+        """
+        if folder.exists() and not folder.is_dir():
+            raise StoreError(f"{folder} is a file; give -o the name of a folder")
+        if folder.is_dir() and not (folder / SETTINGS).exists():
+            own = (IMAGES, FEATURES)
+            others = [p.name for p in folder.iterdir() if p.name not in own and p.name[0] != "."]
+            if others:
+                raise StoreError(
+                    f"{folder} holds other files ({others[0]}, ...); give -o a new or empty folder"
+                )
+        try:
+            (folder / IMAGES).mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(
+                f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+            ) from error
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What all models have in common, versions and machine."""
+        found: dict[str, Any] = json.loads((self.folder / SETTINGS).read_text(encoding="utf-8"))
+        return found
+
+    def path(self, combination: Combination | str) -> Path:
+        """The folder of a combination's model."""
+        return self.folder / str(combination).upper()
+
+    def picture(self, combination: Combination | str) -> Path:
+        """The picture of a combination's cloud."""
+        return self.path(combination) / PICTURE
+
+    def cloud(self, combination: Combination | str) -> Cloud | None:
+        """The cloud of a combination's model; None where there is no model."""
+        file = self.path(combination) / CLOUD
+        return read_cloud(file.read_bytes(), file) if file.is_file() else None
+
+    def table(self) -> pl.DataFrame:
+        """One row a combination; columns as in `reconstruction_schema.RECONSTRUCTIONS`."""
+        import polars as pl
+
+        if not (self.folder / TABLE).is_file():
+            return reconstruction_table(pl.DataFrame())
+        return pl.read_parquet(self.folder / TABLE)
+
+
+def read_outcome(folder: Path) -> Row | None:
+    """The row of a finished reconstruction; None where there is none."""
+    try:
+        found = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def write_outcome(folder: Path, row: Row) -> None:
+    """Say that a reconstruction is finished; comes after all of its files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole({folder / OUTCOME: json_content(row)})
+
+
+def write_table(folder: Path, rows: Iterable[Row]) -> pl.DataFrame:
+    """Write the rows of all models as Parquet and CSV."""
+    import polars as pl
+
+    table = reconstruction_table(pl.DataFrame(list(rows), infer_schema_length=None, orient="row"))
+    text = table.write_csv().encode()
+    write_whole({folder / TABLE: parquet_content(table), folder / TABLE_TEXT: text})
+    return table

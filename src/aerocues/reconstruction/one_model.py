@@ -1,0 +1,169 @@
+"""One combination from images to a judged model, in the folder of that combination."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from aerocues.datasets.dataset import Image
+from aerocues.evaluation.features import StageError
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.whole_files import write_whole
+from aerocues.methods.combination import Combination
+from aerocues.reconstruction.colmap import registered
+from aerocues.reconstruction.database import verified_inliers, write_database
+from aerocues.reconstruction.diagnosis import (
+    Outcome,
+    judged,
+    without_features,
+    without_links,
+    without_model,
+)
+from aerocues.reconstruction.exports import export_model, undistort
+from aerocues.reconstruction.mapping import map_scene
+from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
+from aerocues.reconstruction.matching import Announce, SceneMatcher, call_of
+from aerocues.reconstruction.picture import picture_of
+from aerocues.reconstruction.quality import cloud_of, model_figures
+from aerocues.reconstruction.scene import Scene
+from aerocues.reconstruction.truth import compare_with_truth, to_true_frame, true_positions
+from aerocues.reconstruction.verification import linked_pairs, verify
+
+Result = TypeVar("Result")
+MATCHES = "matches.npz"
+DATABASE = "database.db"
+CLOUD = "cloud.npz"
+PICTURE = "picture.png"
+
+
+class ModelMaker:
+    """Makes the model of one combination.
+
+    Parameters
+    ----------
+    scene : Scene
+    combination : Combination
+    announce : callable
+        Told of each stage before it begins.
+    """
+
+    def __init__(self, scene: Scene, combination: Combination, announce: Announce) -> None:
+        self._scene = scene
+        self._combination = combination
+        self._announce = announce
+        self._folder = scene.place(combination)
+        self._row: Row = {}
+
+    def make(self) -> Row:
+        """The row of the reconstruction, with its status, as far as it came."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        self._row.update(
+            images=len(self._scene.dataset.images), pairs=len(self._scene.dataset.pairs)
+        )
+        try:
+            outcome = self._reconstruct()
+        except StageError as failure:
+            outcome = Outcome(failure.status, failure.message)
+        times = [self._row.get(f"{stage}_seconds") for stage in _STAGES]
+        if None not in times:
+            self._row["reconstruction_seconds"] = sum(times)
+        return {**self._row, "status": outcome.status, "message": outcome.message}
+
+    def _reconstruct(self) -> Outcome:
+        matched = self._matched()
+        if failure := without_features({n: len(k) for n, k in matched.keypoints.items()}):
+            return failure
+        inliers, numbers = self._timed("verification", lambda: self._verify(matched))
+        counts = (self._row["pairs"], self._row["linked_pairs"], len(inliers))
+        self._row.update(
+            verified_pairs=len(inliers), verified_matches=sum(inliers.values(), start=0)
+        )
+        if failure := without_links(*counts):
+            return failure
+        models = self._timed(
+            "mapping",
+            lambda: map_scene(
+                self._folder / DATABASE,
+                self._scene.images,
+                self._folder / "mapping",
+                self._scene.protocol,
+            ),
+        )
+        self._row["components"] = len(models)
+        if not models:
+            return without_model(self._folder / DATABASE, inliers, numbers)
+        return self._judge(models[0], inliers)
+
+    def _matched(self) -> MatchedScene:
+        """Features and matches: those that are there already, or new ones."""
+        file = self._folder / MATCHES
+        key = self._scene.matching_key(self._combination)
+        matched = read_matched_scene(file, key)
+        if matched is None:
+            matched = SceneMatcher(self._scene, self._combination, self._announce).match()
+            matched.write(file, key)
+        self._row.update(
+            matches=sum(len(each) for each in matched.pairs.values()),
+            feature_seconds=matched.feature_seconds,
+            matching_seconds=matched.matching_seconds,
+        )
+        return matched
+
+    def _timed(self, stage: str, call: Callable[[], Result]) -> Result:
+        images = f"{len(self._scene.dataset.images)} images"
+        self._announce(call_of(stage, self._combination, images))
+        begun = time.process_time()
+        found = call()
+        self._row[f"{stage}_seconds"] = time.process_time() - begun
+        return found
+
+    def _verify(self, matched: MatchedScene) -> tuple[dict[Names, int], dict[str, int]]:
+        linked = linked_pairs(matched, self._scene.protocol)
+        self._row["linked_pairs"] = len(linked)
+        database = self._folder / DATABASE
+        numbers = write_database(database, self._scene, matched, linked)
+        if not linked:
+            return {}, numbers
+        verify(database, linked, self._scene.protocol)
+        return verified_inliers(database, numbers), numbers
+
+    def _judge(self, model: Any, inliers: dict[Names, int]) -> Outcome:
+        """Measure the largest model, write it out and say what it is worth."""
+        scene = self._scene
+        self._announce(call_of("judging", self._combination, "its model"))
+        if scene.wanted.colours:
+            model.extract_colors_for_all_images(str(scene.images))
+        truth = true_positions(scene.dataset)
+        frame = to_true_frame(model, truth)
+        self._row.update(model_figures(model))
+        self._row.update(compare_with_truth(model, scene.dataset, truth, frame))
+        images: list[Image] = list(scene.dataset.images)
+        outcome = judged(
+            self._row,
+            [image.name for image in images],
+            [str(image.name) for image in registered(model)],
+            inliers,
+            scene.protocol.requirements,
+        )
+        export_model(model, self._folder)
+        if scene.wanted.undistorted:
+            undistort(self._folder, scene.images)
+        cloud = cloud_of(model, scene.dataset, truth, frame)
+        write_whole(
+            {
+                self._folder / CLOUD: cloud.content(),
+                self._folder / PICTURE: picture_of(cloud, self._title(outcome)),
+            }
+        )
+        return outcome
+
+    def _title(self, outcome: Outcome) -> str:
+        row = self._row
+        return (
+            f"{self._combination}: {row['registered_images']} of {row['images']} images, "
+            f"{row['points_3d']:,} points, {row['reprojection_error']:.2f} px ({outcome.status})"
+        )
+
+
+_STAGES = ("feature", "matching", "verification", "mapping")

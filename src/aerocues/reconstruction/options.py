@@ -1,0 +1,71 @@
+"""What may be chosen of a reconstruction, and who is told how it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from aerocues.errors import ReconstructionError
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.run import usable_cores
+from aerocues.reconstruction.engine import Doing, ReconstructionLimits
+from aerocues.reconstruction.protocol import ReconstructionProtocol
+from aerocues.reconstruction.scene import Wanted
+
+TIME_LIMIT = 1800.0
+
+
+class ReconstructionObserver:
+    """Told how it goes on; the base says nothing."""
+
+    def preparing(self, done: int, total: int) -> None:
+        """`done` of `total` images are in the folder of models."""
+
+    def planned(self, total: int, present: int) -> None:
+        """`total` combinations are to be there, `present` of which are."""
+
+    def working(self, activities: Sequence[Doing]) -> None:
+        """What the processes are doing, several times a second."""
+
+    def finished(self, row: Row) -> None:
+        """A combination is finished and stored."""
+
+
+@dataclass(frozen=True)
+class ReconstructionOptions:
+    """What may be chosen besides scene and combinations.
+
+    Parameters
+    ----------
+    preset : str
+        Of parameters of the methods; with ``thesis`` pairs need not beat chance.
+    protocol : ReconstructionProtocol
+    wanted : Wanted
+    reference : str or None
+        Combination to whose cloud distances are measured; the largest model by default.
+    workers, memory_limit_mb : int or None
+        Processes at a time, one a core by default; memory of each, their share of 80 %.
+    time_limit : float
+        CPU seconds of a stage.
+    retry_failed : bool
+        Try again what crashed, raised an error, or ran out of time or memory.
+    """
+
+    preset: str = "default"
+    protocol: ReconstructionProtocol = field(default_factory=ReconstructionProtocol)
+    wanted: Wanted = field(default_factory=Wanted)
+    reference: str | None = None
+    workers: int | None = None
+    memory_limit_mb: int | None = None
+    time_limit: float = TIME_LIMIT
+    retry_failed: bool = False
+
+    def limits(self) -> ReconstructionLimits:
+        """The limits of a process on this machine; ReconstructionError if they make no sense."""
+        import psutil
+
+        workers = usable_cores() if self.workers is None else self.workers
+        if workers < 1 or self.time_limit <= 0:
+            raise ReconstructionError("--workers and --time-limit must be positive")
+        share = int(0.8 * psutil.virtual_memory().total / 2**20 / workers)
+        return ReconstructionLimits(workers, self.time_limit, self.memory_limit_mb or share)

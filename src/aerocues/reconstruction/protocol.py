@@ -1,0 +1,94 @@
+"""What all combinations of a scene have in common when they are reconstructed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Literal
+
+from aerocues.evaluation.protocol import ChanceTest, Verification
+
+Intrinsics = Literal["fixed", "refine"]
+Mapper = Literal["incremental", "global"]
+
+# Raised whenever the same images and methods would give other models.
+RECONSTRUCTION_VERSION = 1
+MAX_KEYPOINTS = 8000
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What a model must be, to count as a success.
+
+    Parameters
+    ----------
+    registered_share : float
+        Least share of the images that the largest model holds.
+    position_error_share, position_error_metres : float
+        A model whose camera centres are off by more than both is misplaced: the share of the
+        extent of the flight tells bent models, the metres allow for the receiver of GPS.
+    """
+
+    registered_share: float = 0.8
+    position_error_share: float = 0.05
+    position_error_metres: float = 5.0
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """Settings of COLMAP; the rest are its defaults.
+
+    Bundle adjustment is called less often than by default: the same images and points within
+    0.3 %, in half the time.
+    """
+
+    verification_trials: int = 1000
+    smallest_model: int = 3
+    most_models: int = 10
+    global_adjustment_ratio: float = 1.4
+    global_refinements: int = 2
+    local_refinements: int = 1
+
+
+@dataclass(frozen=True)
+class ReconstructionProtocol:
+    """How combinations are reconstructed; recorded with every model.
+
+    Parameters
+    ----------
+    seed : int
+        Of every stage.
+    max_keypoints : int
+        Strongest keypoints kept in an image; 0: all.
+    intrinsics : {"fixed", "refine"}
+        Whether focal length and distortion are those known before, or adjusted with the model.
+        Flat scenes seen from straight above do not determine them.
+    focal_length : float or None
+        Pixels, in place of what EXIF tells.
+    mapper : {"incremental", "global"}
+    chance : ChanceTest or None
+        Pairs whose matches do not beat chance are not given to COLMAP. With thousands of
+        keypoints, images that share nothing have more than enough matches to be verified by
+        COLMAP's rules, and bend the model.
+    """
+
+    seed: int = 0
+    max_keypoints: int = MAX_KEYPOINTS
+    intrinsics: Intrinsics = "fixed"
+    focal_length: float | None = None
+    mapper: Mapper = "incremental"
+    verification: Verification = field(default_factory=Verification)
+    chance: ChanceTest | None = field(default_factory=ChanceTest)
+    mapping: Mapping = Mapping()
+    requirements: Requirements = Requirements()
+
+    def matching_identity(self) -> dict[str, object]:
+        """What decides features and matches."""
+        return {
+            "version": RECONSTRUCTION_VERSION,
+            "seed": self.seed,
+            "max_keypoints": self.max_keypoints,
+        }
+
+    def identity(self) -> dict[str, object]:
+        """What decides a model and what is said of it."""
+        return {"version": RECONSTRUCTION_VERSION, **asdict(self)}

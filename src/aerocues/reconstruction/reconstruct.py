@@ -1,0 +1,248 @@
+"""The whole reconstruction: a scene and combinations in, a folder of models out."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import time
+from collections.abc import Iterable
+from dataclasses import asdict, replace
+from importlib.metadata import version
+from pathlib import Path
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import ReconstructionError, StoreError
+from aerocues.evaluation.folder_lock import folder_lock
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.protocol import ChanceTest
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
+from aerocues.evaluation.whole_files import json_content, write_whole
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import preset_named
+from aerocues.methods.selection import select
+from aerocues.reconstruction.engine import (
+    ReconstructionLimits,
+    in_groups,
+    prepare_images,
+    run_reconstructions,
+)
+from aerocues.reconstruction.feature_files import remove_features
+from aerocues.reconstruction.images import cameras_of
+from aerocues.reconstruction.models import (
+    RETRIED,
+    SETTINGS,
+    Models,
+    read_outcome,
+    write_outcome,
+    write_table,
+)
+from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
+from aerocues.reconstruction.references import with_distances
+from aerocues.reconstruction.scene import Scene
+
+
+def reconstruct_scene(
+    dataset: Dataset,
+    combinations: str | Iterable[str | Combination],
+    output: Path,
+    options: ReconstructionOptions,
+    observer: ReconstructionObserver,
+    store: Store | None = None,
+) -> Models:
+    """Reconstruct a scene with each combination; see `aerocues.reconstruct`.
+
+    Parameters
+    ----------
+    store : Store, optional
+        Results of the same scene, which get the figures and clouds, too.
+    """
+    _check_scene(dataset)
+    scene = _scene(dataset, output, options)
+    chosen = _chosen(scene, combinations)
+    reference = Combination.parse(options.reference) if options.reference else None
+    if reference is not None and reference not in chosen:
+        raise ReconstructionError(
+            f"the reference {reference} is not among the combinations; add it to them"
+        )
+    Models.create(output)
+    with folder_lock(output):
+        scene = _with_cameras(scene, options.limits(), observer)
+        _write_settings(scene, options)
+        finished = _finished(scene, chosen, retry_failed=options.retry_failed)
+        observer.planned(len(chosen), len(finished))
+        try:
+            left = [each for each in chosen if each not in finished]
+            for combination, row in _reconstruct(scene, left, options.limits(), observer):
+                finished[combination] = row
+        finally:  # an interruption loses nothing that is finished
+            if finished:
+                _write_rows(scene, finished, reference, store)
+        remove_features(output)
+    return Models(output)
+
+
+def _check_scene(dataset: Dataset) -> None:
+    if dataset.geometry != "epipolar":
+        raise ReconstructionError(
+            f"the images of {dataset.name} are related by homographies and have no depth; "
+            "reconstruct a folder or a flight"
+        )
+    sequences = list(dict.fromkeys(pair.sequence for pair in dataset.pairs))
+    if len(sequences) > 1:
+        raise ReconstructionError(
+            f"{dataset.name} has {len(sequences)} scenes ({', '.join(sequences[:5])}, ...); "
+            "choose one with --sequences"
+        )
+
+
+def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Scene:
+    preset = preset_named(options.preset)
+    chance = ChanceTest() if preset.chance_test else None
+    return Scene(
+        dataset=dataset,
+        methods=installed_methods().with_preset(preset),
+        preset=preset.name,
+        protocol=replace(options.protocol, chance=chance),
+        folder=output.absolute(),
+        image_keys={image.name: image.source.content_key() for image in dataset.images},
+        wanted=options.wanted,
+        versions=(software_versions()["opencv"], version("pycolmap")),
+    )
+
+
+def _chosen(scene: Scene, combinations: str | Iterable[str | Combination]) -> list[Combination]:
+    """The combinations in the order asked for, where each was named; else in that of the tables."""
+    patterns = combinations if isinstance(combinations, str) else [str(c) for c in combinations]
+    chosen = select(scene.methods, patterns)
+    if not isinstance(patterns, str):
+        place = {name: number for number, name in enumerate(patterns)}
+        chosen.sort(key=lambda each: place.get(str(each), len(place)))
+    gray = any(image.source.is_gray() for image in scene.dataset.images)
+    needs_colour = [
+        each for each in chosen if scene.methods.descriptors[each.descriptor].needs_colour
+    ]
+    if gray and needs_colour:
+        chosen = [each for each in chosen if each not in needs_colour]
+        if not chosen:
+            raise ReconstructionError(
+                f"{needs_colour[0]} needs colour and images are gray; choose other combinations"
+            )
+    return chosen
+
+
+def _with_cameras(
+    scene: Scene, limits: ReconstructionLimits, observer: ReconstructionObserver
+) -> Scene:
+    prepared = prepare_images(scene, limits, observer.preparing)
+    return replace(scene, cameras=cameras_of(scene.dataset, prepared, scene.protocol))
+
+
+def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
+    source = scene.dataset.source
+    facts = {
+        "settings_key": scene.settings_key(),
+        "dataset": {
+            "name": scene.dataset.name,
+            "images": len(scene.dataset.images),
+            "pairs": len(scene.dataset.pairs),
+            "settings": dict(scene.dataset.settings),
+            "source": asdict(source) if source else None,
+        },
+        "preset": scene.preset,
+        "protocol": asdict(scene.protocol),
+        "cameras": [asdict(group) for group in scene.cameras],
+        "time_limit": options.time_limit,
+        "versions": {**software_versions(), "pycolmap": version("pycolmap")},
+        "machine": machine_facts(),
+    }
+    write_whole({scene.folder / SETTINGS: json_content(facts)})
+
+
+def _finished(
+    scene: Scene, chosen: Iterable[Combination], *, retry_failed: bool
+) -> dict[Combination, Row]:
+    """Rows of the reconstructions that are there and still hold."""
+    finished = {}
+    for combination in chosen:
+        row = read_outcome(scene.place(combination))
+        if row is None or row.get("row_key") != scene.row_key(combination):
+            continue
+        if retry_failed and row["status"] in RETRIED:
+            continue
+        finished[combination] = row
+    return finished
+
+
+def _reconstruct(
+    scene: Scene,
+    combinations: list[Combination],
+    limits: ReconstructionLimits,
+    observer: ReconstructionObserver,
+) -> Iterable[tuple[Combination, Row]]:
+    running = run_reconstructions(scene, in_groups(combinations), limits, observer.working)
+    with contextlib.closing(running):  # an interruption ends the processes here and now
+        for combination, figures, last in running:
+            row = {**_identity(scene, combination), **figures, "reconstructed_at": time.time()}
+            write_outcome(scene.place(combination), row)
+            if last:
+                remove_features(scene.folder, combination)
+            observer.finished(row)
+            yield combination, row
+
+
+def _identity(scene: Scene, combination: Combination) -> Row:
+    protocol = scene.protocol
+    sources = sorted({group.source for group in scene.cameras})
+    return {
+        "dataset": scene.dataset.name,
+        **asdict(combination),
+        "images": len(scene.dataset.images),
+        "pairs": len(scene.dataset.pairs),
+        "preset": scene.preset,
+        "parameters": json.dumps(scene.methods.parameters(combination), sort_keys=True),
+        "pairing": dict(scene.dataset.settings).get("pairs", "own"),
+        "max_keypoints": protocol.max_keypoints,
+        "intrinsics": f"{protocol.intrinsics} ({', '.join(sources)})",
+        "mapper": protocol.mapper,
+        "seed": protocol.seed,
+        "opencv_version": scene.versions[0],
+        "colmap_version": scene.versions[1],
+        "machine": machine_name(),
+        "settings_key": scene.settings_key(),
+        "row_key": scene.row_key(combination),
+    }
+
+
+def _write_rows(
+    scene: Scene,
+    finished: dict[Combination, Row],
+    reference: Combination | None,
+    store: Store | None,
+) -> None:
+    """Measure distances between clouds, and write the table here and into the results."""
+    clouds = Models(scene.folder)
+    rows, measured = with_distances(finished, clouds.cloud, reference)
+    table = write_table(scene.folder, rows)
+    if store is None:
+        return
+    try:
+        with store.writing():
+            for key, cloud in measured.items():
+                store.write_cloud(key, cloud)
+            store.add_reconstructions(table)
+    except StoreError as error:
+        raise StoreError(f"the models are finished, but {error}") from error
+
+
+def open_results(folder: str | Path, dataset: Dataset) -> Store:
+    """The results that are to get the figures; StoreError where they are of something else."""
+    store = Store.open(Path(folder))
+    names = store.plan()["dataset"].unique().to_list()
+    if dataset.name not in names:
+        raise StoreError(
+            f"{folder} holds results of {', '.join(sorted(names))} and not of {dataset.name}; "
+            "reconstruct the images that they were measured on"
+        )
+    return store

@@ -1,0 +1,67 @@
+"""Distances of all clouds to that of the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from aerocues.evaluation.clouds import Cloud
+from aerocues.evaluation.metrics import Row
+from aerocues.methods.combination import Combination
+from aerocues.reconstruction.cloud_distance import cloud_distances
+
+
+def with_distances(
+    rows: Mapping[Combination, Row],
+    cloud_of: Callable[[Combination], Cloud | None],
+    reference: Combination | None,
+) -> tuple[list[Row], dict[str, Cloud]]:
+    """Rows and clouds with their distances to the reference.
+
+    Parameters
+    ----------
+    rows : mapping of Combination to Row
+    cloud_of : callable
+    reference : Combination, optional
+        By default the model that succeeded with most images, then most points.
+
+    Returns
+    -------
+    rows : list of Row
+        In the same order.
+    clouds : dict of str to Cloud
+        By the key of the row.
+    """
+    clouds = {each: cloud for each in rows if (cloud := cloud_of(each)) is not None}
+    chosen = _reference(rows, clouds, reference)
+    measured_rows, measured_clouds = [], {}
+    for combination, row in rows.items():
+        cloud = clouds.get(combination)
+        if cloud is not None:
+            figures: Row = {"length_unit": cloud.unit}
+            found = cloud_distances(cloud, clouds[chosen]) if chosen else None
+            if chosen is not None and found is not None:
+                unit = clouds[chosen].unit
+                figures = {**found.figures(), "reference": str(chosen), "length_unit": unit}
+                cloud = replace(cloud, distances=found.to_reference.astype(np.float32))
+            row = {**row, **figures}  # noqa: PLW2901
+            measured_clouds[str(row["row_key"])] = cloud
+        measured_rows.append(row)
+    return measured_rows, measured_clouds
+
+
+def _reference(
+    rows: Mapping[Combination, Row],
+    clouds: Mapping[Combination, Cloud],
+    wanted: Combination | None,
+) -> Combination | None:
+    if wanted is not None:
+        return wanted if wanted in clouds else None
+    good = [each for each in clouds if rows[each]["status"] == "ok"]
+    return min(
+        good,
+        key=lambda each: (-rows[each]["registered_images"], -rows[each]["points_3d"], str(each)),
+        default=None,
+    )

@@ -1,0 +1,137 @@
+"""What is known to be true of a scene, and how a model is brought into its frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Dataset, TrueView
+from aerocues.datasets.gps import east_north_up
+from aerocues.evaluation.metrics import Row
+from aerocues.reconstruction.alignment import (
+    Similarity,
+    extent,
+    root_mean_square,
+    rotation_angles,
+    similarity,
+)
+from aerocues.reconstruction.colmap import camera_from_world, registered
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TruePositions:
+    """Centres of cameras in metres by name of the image; from ``poses`` or ``gps``."""
+
+    source: str
+    by_name: dict[str, Array]
+
+
+def true_positions(dataset: Dataset) -> TruePositions | None:
+    """Known poses, else GPS; None where fewer than three images have a position."""
+    poses = {image.name: image.truth.centre for image in dataset.images if image.truth}
+    if len(poses) >= 3:
+        return TruePositions("poses", poses)
+    located = [image for image in dataset.images if image.gps is not None]
+    if len(located) < 3:
+        return None
+    # An altitude that some images lack would count as that of the first.
+    positions = east_north_up([image.gps for image in located if image.gps])
+    return TruePositions(
+        "gps", {image.name: each for image, each in zip(located, positions, strict=True)}
+    )
+
+
+def centres_of(model: Any) -> dict[str, Array]:
+    """Centres of the registered cameras in the model's frame, by name of the image."""
+    return {
+        str(image.name): np.asarray(image.projection_center(), np.float64)
+        for image in registered(model)
+    }
+
+
+def to_true_frame(model: Any, truth: TruePositions | None) -> Similarity | None:
+    """From the model's frame to metres; None where nothing is known or it is not determined."""
+    if truth is None:
+        return None
+    centres = centres_of(model)
+    shared = [name for name in centres if name in truth.by_name]
+    return similarity(
+        np.array([centres[name] for name in shared]).reshape(-1, 3),
+        np.array([truth.by_name[name] for name in shared]).reshape(-1, 3),
+    )
+
+
+def compare_with_truth(
+    model: Any, dataset: Dataset, truth: TruePositions | None, frame: Similarity | None
+) -> Row:
+    """Errors of positions, rotations and surface, as far as the truth is known.
+
+    The extent is that of all true positions, also of images that the model lacks.
+    """
+    if truth is None or frame is None:
+        return {}
+    centres = centres_of(model)
+    errors = np.array(
+        [
+            np.linalg.norm(frame.apply(centre) - truth.by_name[name])
+            for name, centre in centres.items()
+            if name in truth.by_name
+        ]
+    )
+    rmse = root_mean_square(errors)
+    size = extent(np.array(list(truth.by_name.values())))
+    found: Row = {"truth": truth.source, "position_rmse": rmse, "position_error_share": rmse / size}
+    if truth.source == "poses":
+        views = {image.name: image.truth for image in dataset.images if image.truth}
+        found["rotation_error"] = _rotation_error(model, views, frame)
+        found["surface_error"] = _surface_error(model, views, frame)
+    return found
+
+
+def _rotation_error(model: Any, views: dict[str, TrueView], frame: Similarity) -> float:
+    images = [image for image in registered(model) if image.name in views]
+    estimated = np.array([camera_from_world(image)[0] @ frame.rotation.T for image in images])
+    true = np.array([views[str(image.name)].rotation for image in images])
+    return float(np.median(rotation_angles(estimated, true)))
+
+
+def _surface_error(model: Any, views: dict[str, TrueView], frame: Similarity) -> float | None:
+    """Median over points of the median over their images of the error in depth.
+
+    The point is seen through the true camera: its depth there against that of the surface.
+    """
+    errors: dict[int, list[float]] = {}
+    for image in registered(model):
+        view = views.get(str(image.name))
+        if view is None or view.depth is None:
+            continue
+        numbers = [point.point3D_id for point in image.points2D if point.has_point3D()]
+        points = np.array([model.points3D[number].xyz for number in numbers]).reshape(-1, 3)
+        found = _depth_errors(frame.apply(points), view)
+        for number, error in zip(numbers, found, strict=True):
+            if np.isfinite(error):
+                errors.setdefault(number, []).append(float(error))
+    if not errors:
+        return None
+    return float(np.median([np.median(each) for each in errors.values()]))
+
+
+def _depth_errors(points: Array, view: TrueView) -> Array:
+    """Difference of depth, (N,) metres; NaN behind the camera and outside the image."""
+    assert view.depth is not None
+    depth = view.depth.read()
+    x, y, z = (view.rotation @ (points - view.centre).T).astype(np.float64)
+    camera = view.camera
+    with np.errstate(divide="ignore", invalid="ignore"):
+        column = np.floor(camera.focal_x * x / z + camera.centre_x + 0.5)
+        row = np.floor(camera.focal_y * y / z + camera.centre_y + 0.5)
+    inside = (z > 0) & (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
+    errors = np.full(len(points), np.nan)
+    surface = depth[row[inside].astype(int), column[inside].astype(int)]
+    errors[inside] = np.abs(z[inside] - surface)
+    return errors

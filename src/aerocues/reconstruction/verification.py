@@ -1,0 +1,52 @@
+"""Which pairs of images are linked: the test against chance, then COLMAP's verification."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from aerocues.evaluation.clock import Clock
+from aerocues.evaluation.protocol import MeasurementProtocol
+from aerocues.evaluation.verification import Verifier
+from aerocues.reconstruction.matched_scene import MatchedScene, Names
+from aerocues.reconstruction.protocol import ReconstructionProtocol
+
+
+def linked_pairs(matched: MatchedScene, protocol: ReconstructionProtocol) -> list[Names]:
+    """The pairs whose matches beat chance; without a chance test, all with enough matches."""
+    least = protocol.verification.minimum_matches
+    enough = [names for names, matches in matched.pairs.items() if len(matches) >= least]
+    if protocol.chance is None:
+        return enough
+    measurement = MeasurementProtocol(
+        seed=protocol.seed, verification=protocol.verification, chance=protocol.chance
+    )
+    verifier = Verifier(measurement, "epipolar", Clock(memory=False))
+    return [names for names in enough if _beats_chance(verifier, matched, names)]
+
+
+def _beats_chance(verifier: Verifier, matched: MatchedScene, names: Names) -> bool:
+    first, second = matched.points(names)
+    order = np.argsort(matched.pairs[names].distance, kind="stable")
+    return verifier.verify(first, second, order).passed
+
+
+def verify(database: Path, pairs: list[Names], protocol: ReconstructionProtocol) -> None:
+    """Verify all pairs in the database, by essential or fundamental matrix and homography."""
+    import pycolmap
+
+    options = pycolmap.TwoViewGeometryOptions()
+    options.ransac.max_num_trials = protocol.mapping.verification_trials
+    if hasattr(options.ransac, "random_seed"):
+        options.ransac.random_seed = protocol.seed
+    pycolmap.set_random_seed(protocol.seed)
+    if hasattr(pycolmap, "geometric_verification"):
+        verifier = pycolmap.GeometricVerifierOptions()
+        verifier.num_threads = 1
+        pycolmap.geometric_verification(database, verifier, two_view_geometry_options=options)
+        return
+    listed = database.with_name("pairs.txt")
+    listed.write_text("".join(f"{first} {second}\n" for first, second in pairs), encoding="utf-8")
+    pycolmap.verify_matches(database, listed, options)
+    listed.unlink()

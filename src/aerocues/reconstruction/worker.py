@@ -1,0 +1,43 @@
+"""The process that reconstructs: ``python -m aerocues.reconstruction.worker``.
+
+It receives a scene and then either images to prepare or one combination, and sends back what it
+found. COLMAP can abort its process: nothing but this work is lost with it.
+"""
+
+from __future__ import annotations
+
+from multiprocessing.connection import Connection
+
+from aerocues.evaluation.child import run_child
+from aerocues.evaluation.heartbeat import Heartbeat
+from aerocues.methods.combination import Combination
+
+
+def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
+    """Do one piece of work after the other until the parent closes the pipe."""
+    from aerocues.errors import AerocuesError
+    from aerocues.reconstruction.colmap import quiet
+    from aerocues.reconstruction.images import prepare_image
+    from aerocues.reconstruction.one_model import ModelMaker
+
+    scene = pipe.recv()
+    quiet()
+    pipe.send("ready")
+    while True:
+        try:
+            work = pipe.recv()
+        except EOFError:
+            return
+        try:
+            if isinstance(work, Combination):
+                found: object = ModelMaker(scene, work, heartbeat.announce).make()
+            else:
+                found = prepare_image(scene.dataset.image(work), scene.images)
+        except (AerocuesError, OSError) as error:
+            found = error
+        heartbeat.announce(None)
+        pipe.send(found)
+
+
+if __name__ == "__main__":
+    run_child(serve)
