@@ -5,6 +5,7 @@
     dataset = aerocues.open_dataset("photos", max_width=1000)
     results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
     print(aerocues.score(results).frame("combination"))
+    aerocues.reconstruct("photos", "models", results="results", top=5)
     results.report("report.html")
 
 Everything here is loaded when it is first used, so that importing the package costs nothing.
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from aerocues.measuring import import_results, run
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
+    from aerocues.modelling import reconstruct
+    from aerocues.reconstruction.models import Models
+    from aerocues.reconstruction.options import ReconstructionOptions
+    from aerocues.reconstruction.protocol import ReconstructionProtocol
     from aerocues.report.report import write_report
     from aerocues.results import Results
     from aerocues.scoring.measured import score
@@ -37,6 +42,10 @@ _MODULES = {
     "Observer": "evaluation.run",
     "Results": "results",
     "import_results": "measuring",
+    "reconstruct": "modelling",
+    "ReconstructionOptions": "reconstruction.options",
+    "ReconstructionProtocol": "reconstruction.protocol",
+    "Models": "reconstruction.models",
     "score": "scoring.measured",
     "Ranking": "scoring.ranking",
     "write_report": "report.report",
@@ -55,12 +64,16 @@ __all__ = [
     "Keypoints",
     "Limits",
     "Matches",
+    "Models",
     "Observer",
     "Ranking",
+    "ReconstructionOptions",
+    "ReconstructionProtocol",
     "Results",
     "__version__",
     "import_results",
     "open_dataset",
+    "reconstruct",
     "run",
     "score",
     "write_report",

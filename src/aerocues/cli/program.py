@@ -14,6 +14,7 @@ from aerocues.cli import (
     datasets,
     importing,
     methods,
+    reconstruct,
     report,
     results,
     run,
@@ -44,6 +45,7 @@ app.command("import")(importing.import_table)
 app.command("score")(score.score)
 app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
+app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
 app.add_typer(methods.app, name="methods")
 app.add_typer(datasets.app, name="datasets")

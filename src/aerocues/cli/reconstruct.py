@@ -1,0 +1,236 @@
+"""`aerocues reconstruct`: COLMAP models of a scene, once with each of some combinations."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from aerocues.cli.reconstruction_progress import Reporter
+    from aerocues.datasets.dataset import Dataset
+    from aerocues.reconstruction.models import Models
+    from aerocues.reconstruction.options import ReconstructionOptions
+
+MEGABYTES = 1024
+
+
+class Intrinsics(StrEnum):
+    """Values of ``--intrinsics``."""
+
+    FIXED = "fixed"
+    REFINE = "refine"
+
+
+class Mapper(StrEnum):
+    """Values of ``--mapper``."""
+
+    INCREMENTAL = "incremental"
+    GLOBAL = "global"
+
+
+def reconstruct(
+    dataset: Annotated[str, typer.Argument(help="A folder of images, flight:DIR or uav:DIR.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="MODELS", help="Folder: made or continued."),
+    ],
+    combinations: Annotated[
+        str | None, typer.Option(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,SIFT-SIFT-L2-BF'.")
+    ] = None,
+    results: Annotated[
+        Path | None,
+        typer.Option(
+            "--from",
+            metavar="RESULTS",
+            help="Measured results: their best combinations; figures and clouds go there, too.",
+        ),
+    ] = None,
+    top: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="How many of the best; 10 by default.")
+    ] = None,
+    pairs: Annotated[
+        str | None,
+        typer.Option(
+            help="gps[:K|:50m], exhaustive, consecutive[:K] or a file; gps where images have it."
+        ),
+    ] = None,
+    sequences: Annotated[
+        str | None, typer.Option(metavar="NAME", help="This project only, of several.")
+    ] = None,
+    max_keypoints: Annotated[
+        int, typer.Option(min=0, metavar="N", help="The strongest of an image; 0: all.")
+    ] = 8000,
+    max_width: Annotated[
+        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+    ] = None,
+    equalize: Annotated[
+        str | None, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
+    ] = None,
+    intrinsics: Annotated[
+        Intrinsics, typer.Option(help="Whether the mapper adjusts focal length and distortion.")
+    ] = Intrinsics.FIXED,
+    focal_length: Annotated[
+        float | None, typer.Option(metavar="PIXELS", help="In place of what EXIF tells.")
+    ] = None,
+    mapper: Annotated[Mapper, typer.Option(help="Of COLMAP.")] = Mapper.INCREMENTAL,
+    reference: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COMBINATION", help="To whose cloud distances are; else the largest model."
+        ),
+    ] = None,
+    preset: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Parameters of the methods.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
+    ] = 0,
+    colours: Annotated[
+        bool, typer.Option("--colours/--no-colours", help="Colour the points.")
+    ] = True,
+    undistort: Annotated[
+        bool, typer.Option("--undistort", help="Write images for a dense step, too.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(min=0.001, metavar="SECONDS", help="CPU time of one stage.")
+    ] = 1800.0,
+    memory_limit: Annotated[
+        float | None, typer.Option(min=0.1, metavar="GB", help="Memory of a process.")
+    ] = None,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Try again what failed on this machine.")
+    ] = False,
+) -> None:
+    """Reconstruct a scene in 3D with COLMAP, once with each of some combinations.
+
+    All of them get the same pairs, cameras and settings. Each model is kept as soon as it is
+    there: stop at any moment and run the same command again to go on.
+    """
+    from aerocues.cli.interruption import interruptible
+    from aerocues.errors import ReconstructionError
+
+    if combinations is None and results is None:
+        raise ReconstructionError(
+            "no combinations: name some with --combinations, or results with --from"
+        )
+    if combinations is not None and top is not None:
+        raise ReconstructionError("--top chooses out of --from; leave it or --combinations out")
+    with interruptible():
+        scene, chosen_preset = _open(dataset, results, pairs, sequences, (max_width, equalize))
+        options = _options(
+            {
+                "max_keypoints": max_keypoints,
+                "intrinsics": intrinsics.value,
+                "focal_length": focal_length,
+                "mapper": mapper.value,
+                "seed": seed,
+            },
+            colours=colours,
+            undistorted=undistort,
+            preset=preset or chosen_preset,
+            reference=reference,
+            workers=workers,
+            time_limit=time_limit,
+            memory_limit_mb=None if memory_limit is None else int(memory_limit * MEGABYTES),
+            retry_failed=retry_failed,
+        )
+        models = _reconstruct(scene, output, combinations, results, top, options)
+        _print(models, results)
+
+
+def _open(
+    spec: str,
+    results: Path | None,
+    pairs: str | None,
+    sequences: str | None,
+    reading: tuple[int | None, str | None],
+) -> tuple[Dataset, str]:
+    """The scene, read as the results were measured where nothing else is asked for."""
+    from aerocues.modelling import settings_of_results
+    from aerocues.reconstruction.opening import open_scene
+
+    max_width, equalize = reading
+    known: dict[str, str] = {}
+    if results is not None:
+        name = open_scene(spec, pairs=pairs, sequences=sequences).name
+        known = settings_of_results(results, name)
+    if max_width is None and known.get("max_width", "full") != "full":
+        max_width = int(known["max_width"])
+    scene = open_scene(
+        spec,
+        pairs=pairs,
+        max_width=max_width,
+        equalize=equalize or known.get("equalize", "none"),
+        sequences=sequences,
+    )
+    return scene, known.get("preset", "default")
+
+
+def _options(
+    protocol: dict[str, Any], *, colours: bool, undistorted: bool, **others: Any
+) -> ReconstructionOptions:
+    from aerocues.reconstruction.options import ReconstructionOptions
+    from aerocues.reconstruction.protocol import ReconstructionProtocol
+    from aerocues.reconstruction.scene import Wanted
+
+    return ReconstructionOptions(
+        protocol=ReconstructionProtocol(**protocol), wanted=Wanted(colours, undistorted), **others
+    )
+
+
+def _reconstruct(
+    scene: Dataset,
+    output: Path,
+    combinations: str | None,
+    results: Path | None,
+    top: int | None,
+    options: ReconstructionOptions,
+) -> Models:
+    from aerocues.cli.interruption import Interrupted
+    from aerocues.cli.reconstruction_progress import reporter
+    from aerocues.modelling import reconstruct as make
+
+    shown: Reporter | None = None
+    try:
+        with reporter() as shown:
+            return make(
+                scene,
+                output,
+                combinations,
+                results=results,
+                top=top,
+                options=options,
+                observer=shown,
+            )
+    except Interrupted as interruption:
+        kept = f"; {shown.done} of {shown.total} are finished" if shown and shown.total else ""
+        sys.stderr.write(f"interrupted{kept}; run the same command again to go on\n")
+        raise typer.Exit(interruption.exit_code) from None
+
+
+def _print(models: Models, results: Path | None) -> None:
+    from aerocues.cli.console import standard_output
+    from aerocues.cli.models_table import print_models
+
+    print_models(models)
+    folder = shlex.quote(str(models.folder))
+    lines = [f"\nmodels   {models.folder}", f"table    {models.folder / 'reconstructions.csv'}"]
+    if results is not None:
+        named = shlex.quote(str(results))
+        lines += [
+            f"next     aerocues score {named} --reconstruction",
+            f"         aerocues report {named}",
+        ]
+    else:
+        lines.append(f"next     colmap gui --import_path {folder}/COMBINATION/sparse/0")
+    console = standard_output()
+    for line in lines:
+        console.print(line, soft_wrap=True, markup=False)

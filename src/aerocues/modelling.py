@@ -1,0 +1,112 @@
+"""The function that makes 3D models, as users of the library call it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import ReconstructionError, StoreError
+from aerocues.evaluation.results import Results
+from aerocues.methods.combination import Combination
+from aerocues.methods.presets import PRESETS
+from aerocues.reconstruction.models import Models
+from aerocues.reconstruction.opening import open_scene
+from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
+from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
+from aerocues.scoring.cues import score
+from aerocues.scoring.measured import table_of
+
+TOP = 10
+
+
+def reconstruct(
+    dataset: Dataset | str,
+    output: str | Path,
+    combinations: str | Iterable[str | Combination] | None = None,
+    *,
+    results: str | Path | None = None,
+    top: int | None = None,
+    options: ReconstructionOptions | None = None,
+    observer: ReconstructionObserver | None = None,
+) -> Models:
+    """Reconstruct a scene in 3D with COLMAP, once with each of some combinations.
+
+    Pairs, intrinsics, verification and mapping are the same for all. What is there already is not
+    made again; what was interrupted is.
+
+    Parameters
+    ----------
+    dataset : Dataset or str
+        From `aerocues.open_dataset`, or its text form; images are then matched with their
+        neighbours by GPS, or where those are not known, with all others.
+    output : path
+        Folder of models, made where it is missing: a folder a combination.
+    combinations : str or iterable, optional
+        Globs such as ``"ORB-*-HAM-BF"``, or combinations.
+    results : path, optional
+        Results of the same images: their best combinations are reconstructed where none are
+        named, and the figures and clouds are stored there, too.
+    top : int, optional
+        How many of the best; 10 by default.
+    options : ReconstructionOptions, optional
+    observer : ReconstructionObserver, optional
+        Told how it goes on.
+
+    Returns
+    -------
+    Models
+
+    Raises
+    ------
+    AerocuesError
+        If the scene, the selection or a folder does not allow it. A reconstruction that fails is
+        a row with its reason, and no error.
+    """
+    if combinations is None and results is None:
+        raise ReconstructionError(
+            "no combinations: name some with --combinations, or results with --from"
+        )
+    scene = open_scene(dataset) if isinstance(dataset, str) else dataset
+    store = open_results(results, scene) if results is not None else None
+    if combinations is None:
+        assert results is not None
+        combinations = best_combinations(results, scene.name, top or TOP)
+    return reconstruct_scene(
+        scene,
+        combinations,
+        Path(output),
+        options or ReconstructionOptions(),
+        observer or ReconstructionObserver(),
+        store,
+    )
+
+
+def best_combinations(results: str | Path, dataset: str, top: int) -> list[str]:
+    """The best combinations of measured results by CUES, without figures of reconstructions."""
+    measured = table_of(Results(results), dataset=dataset, reconstruction=False)
+    scores = score(measured.table, measured.preset.settings)
+    names = scores.table.alternatives
+    return [names[position] for position in scores.order[:top]]
+
+
+def settings_of_results(results: str | Path, dataset: str) -> dict[str, str]:
+    """How the images of results were read: ``max_width``, ``equalize`` and ``preset``.
+
+    Raises
+    ------
+    StoreError
+        If `results` is no results folder.
+    """
+    settings = Results(results).settings
+    measured = settings.get("dataset") or {}
+    if measured.get("name") not in (None, dataset):
+        raise StoreError(
+            f"{results} holds results of {measured['name']} and not of {dataset}; reconstruct the "
+            "images that they were measured on"
+        )
+    known = {preset.name for preset in PRESETS}
+    preset = settings.get("preset")
+    found = {name: measured.get("settings", {}).get(name) for name in ("max_width", "equalize")}
+    found["preset"] = preset if preset in known else None
+    return {name: str(value) for name, value in found.items() if value is not None}

@@ -1,0 +1,48 @@
+"""Opening a scene: pairs by GPS where images have it, else all pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.dataset import Dataset
+
+EVERY_PAIR = "exhaustive"
+NEIGHBOURS = "gps"
+
+
+def open_scene(
+    spec: str,
+    *,
+    pairs: str | None = None,
+    max_width: int | None = None,
+    equalize: str = "none",
+    sequences: str | Sequence[str] | None = None,
+) -> Dataset:
+    """Open a dataset to reconstruct it.
+
+    Consecutive images alone tear a flight over a grid apart: where no pairs are asked for, images
+    are matched with their neighbours by GPS, and where those are not known, with all others.
+
+    Parameters
+    ----------
+    spec, pairs, max_width, equalize, sequences
+        As `aerocues.open_dataset` takes them.
+
+    Raises
+    ------
+    DatasetError
+        If the dataset cannot be opened.
+    """
+    options = {"max_width": max_width, "equalize": equalize, "sequences": sequences}
+    dataset = open_dataset(spec, pairs=pairs, **options)  # type: ignore[arg-type]
+    if pairs is not None or not _has_choice(dataset):
+        return dataset
+    located = all(image.gps is not None for image in dataset.images)
+    chosen = NEIGHBOURS if located else EVERY_PAIR
+    return open_dataset(spec, pairs=chosen, **options)  # type: ignore[arg-type]
+
+
+def _has_choice(dataset: Dataset) -> bool:
+    """Whether pairs of the user's choice make sense: not with homographies."""
+    return dataset.geometry == "epipolar"
