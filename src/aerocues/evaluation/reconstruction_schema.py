@@ -42,7 +42,7 @@ _MODEL = (
     _count("images", "images that were to be reconstructed"),
     _count("registered_images", "images of the largest model, the only one that is judged"),
     _count("components", "models that the mapper made; more than one: the scene fell apart"),
-    _count("points_3d", "3D points of the model, each seen in three images or more"),
+    _count("points_3d", "3D points of the model; none is begun with two images only"),
     _count("observations", "keypoints that see a 3D point"),
     _number("mean_track_length", "images", "observations / points_3d"),
     _number(

@@ -50,11 +50,11 @@ def _axes(cloud: Cloud) -> tuple[Array, Array, Array]:
     if cloud.unit == "m":
         return tuple(np.eye(3))  # type: ignore[return-value]
     points = cloud.points.astype(np.float64)
-    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    up = axes[2]
+    centred = points - points.mean(axis=0)
+    up, _, right = np.linalg.eigh(centred.T @ centred)[1].T  # from the least to the most spread
     if (cloud.centres.mean(axis=0) - points.mean(axis=0)) @ up < 0:
         up = -up
-    return axes[0], np.cross(up, axes[0]), up
+    return right, np.cross(up, right), up
 
 
 def _draw_view(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from aerocues.evaluation.clouds import Cloud
 from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
-from aerocues.reconstruction.cloud_distance import cloud_distances
+from aerocues.reconstruction.cloud_distance import CloudDistances, cloud_distances
 
 
 def with_distances(
@@ -41,15 +40,26 @@ def with_distances(
         cloud = clouds.get(combination)
         if cloud is not None:
             figures: Row = {"length_unit": cloud.unit}
-            found = cloud_distances(cloud, clouds[chosen]) if chosen else None
+            found = _distances(combination, chosen, clouds)
             if chosen is not None and found is not None:
                 unit = clouds[chosen].unit
                 figures = {**found.figures(), "reference": str(chosen), "length_unit": unit}
-                cloud = replace(cloud, distances=found.to_reference.astype(np.float32))
+                cloud = cloud.with_distances(found.to_reference)
             row = {**row, **figures}  # noqa: PLW2901
             measured_clouds[str(row["row_key"])] = cloud
         measured_rows.append(row)
     return measured_rows, measured_clouds
+
+
+def _distances(
+    combination: Combination, reference: Combination | None, clouds: Mapping[Combination, Cloud]
+) -> CloudDistances | None:
+    if reference is None:
+        return None
+    if combination == reference:  # exactly, whatever the rounding of an alignment
+        nothing = np.zeros(len(clouds[reference].points))
+        return CloudDistances(nothing, nothing)
+    return cloud_distances(clouds[combination], clouds[reference])
 
 
 def _reference(

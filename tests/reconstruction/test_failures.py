@@ -1,0 +1,136 @@
+"""Reconstructions that fail say why, and cost only themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+import aerocues
+from aerocues.datasets.dataset import Dataset, Image
+from aerocues.datasets.decoding import FileSource
+from aerocues.evaluation.metrics import Row
+from aerocues.reconstruction.options import ReconstructionOptions
+from tests.methods.distribution import write_distribution
+from tests.methods.pictures import textured
+from tests.reconstruction.scenes import scene_of, write_scene
+
+ORB = "ORB-ORB-HAM-BF"
+Picture = Callable[[int], np.ndarray]
+
+
+def noise(number: int) -> np.ndarray:
+    return np.random.default_rng(number).integers(0, 256, (240, 320, 3), dtype=np.uint8)
+
+
+def gray(number: int) -> np.ndarray:
+    return np.full((240, 320, 3), 128, np.uint8)
+
+
+def always_the_same(number: int) -> np.ndarray:
+    return textured(320, 240, seed=0)
+
+
+def scene(folder: Path, picture: Picture, count: int = 4) -> Dataset:
+    folder.mkdir(parents=True)
+    images = []
+    for number in range(count):
+        path = folder / f"{number}.png"
+        cv2.imwrite(str(path), picture(number))
+        images.append(Image(path.name, FileSource(path)))
+    return scene_of(images)
+
+
+def only_row(dataset: Dataset, output: Path, options: ReconstructionOptions, name: str = ORB) -> Row:
+    [row] = aerocues.reconstruct(dataset, output, name, options=options).table().to_dicts()
+    return row
+
+
+@pytest.mark.parametrize(
+    ("picture", "status", "message"),
+    [
+        (gray, "no_features", "4 of 4 images have no keypoints"),
+        (noise, "no_verified_pair", "none of 6 pairs has matches that beat chance"),
+    ],
+)
+def test_images_without_anything_in_common(
+    picture: Picture, status: str, message: str, tmp_path: Path, quick: ReconstructionOptions
+) -> None:
+    protocol = replace(quick.protocol, focal_length=300.0)
+    options = replace(quick, protocol=protocol)
+    row = only_row(scene(tmp_path / "images", picture), tmp_path / "models", options)
+    assert (row["status"], row["message"]) == (status, message)
+    assert row["registered_images"] is None
+
+
+def test_identical_images_have_no_angle_between_them(
+    tmp_path: Path, quick: ReconstructionOptions
+) -> None:
+    options = replace(quick, protocol=replace(quick.protocol, focal_length=300.0))
+    row = only_row(scene(tmp_path / "images", always_the_same), tmp_path / "models", options)
+    assert row["status"] == "no_initial_pair"
+    assert "at 0.0 degrees" in row["message"]
+    assert "COLMAP asks for 25 inliers and 4 degrees" in row["message"]
+
+
+def test_two_groups_that_do_not_meet_are_named(
+    tmp_path: Path, quick: ReconstructionOptions
+) -> None:
+    one = write_scene(tmp_path / "one", [(0, 0), (9, 0), (0, 9), (9, 9)], truth=False)
+    two = write_scene(tmp_path / "two", [(0, 0), (9, 0), (0, 9)], truth=False, seed=7)
+    images = [replace(image, name=f"one/{image.name}") for image in one.images]
+    images += [replace(image, name=f"two/{image.name}") for image in two.images]
+    options = replace(quick, protocol=replace(quick.protocol, focal_length=420.0))
+    row = only_row(scene_of(images), tmp_path / "models", options, "SIFT-SIFT-L2-FLANN")
+    assert row["status"] == "incomplete"
+    assert (row["registered_images"], row["components"]) == (4, 2)
+    assert row["message"] == (
+        "the model holds 4 of 7 images; the graph of verified pairs falls into 2 parts: 4 images "
+        "(one/view_0.png, one/view_1.png, one/view_2.png, ...), 3 images (two/view_0.png, "
+        "two/view_1.png, two/view_2.png)"
+    )
+
+
+@pytest.fixture
+def faulty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Descriptors that go wrong, as if installed."""
+    offered = {
+        "NANS": "tests.reconstruction.faulty:NanDescriptor",
+        "DYING": "tests.reconstruction.faulty:DyingDescriptor",
+        "GREEDY": "tests.reconstruction.faulty:GreedyDescriptor",
+    }
+    write_distribution(tmp_path / "site", "aerocues-faults", {"descriptors": offered}, {})
+    monkeypatch.syspath_prepend(tmp_path / "site")
+
+
+@pytest.mark.usefixtures("faulty")
+def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
+    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    names = "ORB-NANS-HAM-BF,ORB-DYING-HAM-BF,ORB-GREEDY-HAM-BF,ORB-ORB-HAM-BF"
+    table = aerocues.reconstruct(landscape, empty, names, options=quick).table()
+    rows = {row["descriptor"]: row for row in table.to_dicts()}
+    assert rows["ORB"]["status"] == "ok"
+    assert rows["NANS"]["status"] == "error"
+    assert rows["NANS"]["message"] == (
+        "NANS describing view_0.png returned positions that are not finite"
+    )
+    assert rows["DYING"]["status"] == "crashed"
+    assert rows["GREEDY"]["status"] == "out_of_memory"
+    assert "GREEDY describing ORB keypoints of view_0.png" in rows["GREEDY"]["message"]
+    assert "signal SIGSEGV) in features ORB-DYING-HAM-BF on view_0.png" in rows["DYING"]["message"]
+
+
+def test_a_stage_that_takes_too_long_is_ended(
+    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    options = replace(quick, time_limit=0.3)
+    row = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
+    assert row["status"] == "timeout"
+    assert "used more than 0.3 CPU seconds (--time-limit)" in row["message"]
+    again = replace(quick, retry_failed=True)
+    assert only_row(landscape, empty, again, "SIFT-SIFT-L2-FLANN")["status"] == "ok"

@@ -1,0 +1,138 @@
+"""What a reconstruction is put together from: graphs, files of matches, diagnoses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from aerocues.methods.arrays import Keypoints
+from aerocues.methods.strongest import strongest
+from aerocues.reconstruction.diagnosis import judged, without_features, without_links
+from aerocues.reconstruction.match_graph import parts_of, told_parts
+from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
+from aerocues.reconstruction.protocol import Requirements
+
+IMAGES = ["a", "b", "c", "d", "e", "f"]
+WHOLE = {("a", "b"): 200, ("b", "c"): 80, ("c", "d"): 40, ("d", "e"): 30, ("e", "f"): 20}
+
+
+def test_parts_of_a_graph() -> None:
+    assert parts_of(IMAGES, [("e", "d"), ("d", "c"), ("a", "b")]) == [
+        ["c", "d", "e"],
+        ["a", "b"],
+        ["f"],
+    ]
+    assert parts_of(["a"], []) == [["a"]]
+
+
+def test_parts_in_words() -> None:
+    assert told_parts([["a", "b", "c", "d"], ["e", "f"], ["g"], ["h"]]) == (
+        "4 parts: 4 images (a, b, c, ...), 2 images (e, f), 2 linked with none (g, h)"
+    )
+
+
+def keypoints(responses: list[float]) -> Keypoints:
+    count = len(responses)
+    found = Keypoints.from_xy(np.arange(2.0 * count).reshape(count, 2))
+    return Keypoints(**{**vars(found), "response": np.array(responses, np.float32)})
+
+
+def test_the_strongest_keypoints_keep_their_order() -> None:
+    kept = strongest(keypoints([3, 1, 5, 2, 4]), 3, seed=0)
+    np.testing.assert_array_equal(kept.response, [3, 5, 4])
+    assert len(strongest(keypoints([3, 1]), 0, seed=0)) == 2
+    assert len(strongest(keypoints([3, 1]), 5, seed=0)) == 2
+
+
+def test_equal_responses_favour_no_part_of_the_image() -> None:
+    kept = strongest(keypoints([0.0] * 1000), 100, seed=0)
+    assert 300 < kept.xy[:, 0].mean() / 2 < 700
+    again = strongest(keypoints([0.0] * 1000), 100, seed=0)
+    np.testing.assert_array_equal(kept.xy, again.xy)
+
+
+def matched() -> MatchedScene:
+    pairs = {
+        ("a", "b"): PairMatches(np.array([[0, 1], [2, 0]], np.int32), np.array([3, 4], np.float32)),
+        ("a", "c"): PairMatches(np.empty((0, 2), np.int32), np.empty(0, np.float32)),
+    }
+    found = {"a": keypoints([1, 2, 3]), "b": keypoints([1, 2]), "c": keypoints([])}
+    return MatchedScene(found, pairs, 1.25, 2.5)
+
+
+def test_matches_are_read_as_they_were_written(tmp_path: Path) -> None:
+    file = tmp_path / "matches.npz"
+    matched().write(file, "key")
+    read = read_matched_scene(file, "key")
+    assert read is not None
+    assert (read.feature_seconds, read.matching_seconds) == (1.25, 2.5)
+    assert {name: len(found) for name, found in read.keypoints.items()} == {"a": 3, "b": 2, "c": 0}
+    assert list(read.pairs) == [("a", "b"), ("a", "c")]
+    for pair, matches in matched().pairs.items():
+        np.testing.assert_array_equal(read.pairs[pair].indices, matches.indices)
+    first, second = read.points(("a", "b"))
+    np.testing.assert_array_equal(first, [[0, 1], [4, 5]])
+    np.testing.assert_array_equal(second, [[2, 3], [0, 1]])
+
+
+@pytest.mark.parametrize("size", [0, 10, 300])
+def test_damaged_or_other_matches_do_not_count(tmp_path: Path, size: int) -> None:
+    file = tmp_path / "matches.npz"
+    assert read_matched_scene(file, "key") is None
+    matched().write(file, "key")
+    assert read_matched_scene(file, "another key") is None
+    file.write_bytes(file.read_bytes()[:size])
+    assert read_matched_scene(file, "key") is None
+
+
+def test_failures_before_the_mapper_are_told_in_words() -> None:
+    outcome = without_features({"a": 0, "b": 7, "c": 0})
+    assert outcome is not None
+    assert (outcome.status, outcome.message) == ("no_features", "2 of 3 images have no keypoints")
+    assert without_features({"a": 3, "b": 7}) is None
+    outcome = without_links(pairs=15, linked=0, verified=0)
+    assert outcome is not None
+    assert outcome.message == "none of 15 pairs has matches that beat chance"
+    outcome = without_links(pairs=15, linked=4, verified=0)
+    assert outcome is not None
+    assert outcome.message == "COLMAP verified none of the 4 pairs that beat chance"
+    assert without_links(pairs=15, linked=4, verified=2) is None
+
+
+def test_an_incomplete_model_tells_the_parts_or_what_is_left_out() -> None:
+    torn = {pair: count for pair, count in WHOLE.items() if pair != ("c", "d")}
+    outcome = judged({}, IMAGES, ["a", "b", "c"], torn, Requirements())
+    assert outcome.status == "incomplete"
+    assert outcome.message == (
+        "the model holds 3 of 6 images; the graph of verified pairs falls into 2 parts: "
+        "3 images (a, b, c), 3 images (d, e, f)"
+    )
+    outcome = judged({}, IMAGES, ["a", "b", "c", "d"], WHOLE, Requirements())
+    assert outcome.status == "incomplete"
+    assert outcome.message == (
+        "the model holds 4 of 6 images, though the graph of verified pairs is whole; left out: "
+        "e (2 pairs, at most 30 inliers), f (1 pairs, at most 20 inliers)"
+    )
+    assert judged({}, IMAGES, IMAGES[:5], WHOLE, Requirements()).status == "ok"
+    assert judged({}, IMAGES, IMAGES, WHOLE, Requirements()).message is None
+
+
+@pytest.mark.parametrize(
+    ("share", "metres", "truth", "status"),
+    [
+        (0.18, 37.7, "gps", "misplaced"),
+        (0.08, 2.0, "gps", "ok"),  # within what a receiver of GPS errs
+        (0.08, 2.0, "poses", "misplaced"),
+        (0.01, 37.7, "gps", "ok"),
+    ],
+)
+def test_a_model_far_from_its_positions_is_no_success(
+    share: float, metres: float, truth: str, status: str
+) -> None:
+    row = {"position_error_share": share, "position_rmse": metres, "truth": truth}
+    outcome = judged(row, IMAGES, IMAGES, WHOLE, Requirements())
+    assert outcome.status == status
+    if status == "misplaced":
+        assert "bent or wrongly joined" in (outcome.message or "")

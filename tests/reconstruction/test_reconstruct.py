@@ -1,0 +1,203 @@
+"""From images to models: figures against the truth, files that others read, repetition."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pycolmap
+import pytest
+from plyfile import PlyData
+
+import aerocues
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import ReconstructionError, StoreError
+from aerocues.evaluation.metrics import Row
+from aerocues.reconstruction.models import Models
+from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
+from aerocues.reconstruction.scene import Wanted
+from tests.reconstruction.scenes import scene_of
+
+SIFT = "SIFT-SIFT-L2-FLANN"
+MODEL = "cameras.bin frames.bin images.bin points3D.bin rigs.bin".split()
+
+
+class Counting(ReconstructionObserver):
+    """Remembers what was done."""
+
+    def __init__(self) -> None:
+        self.rows: list[Row] = []
+        self.present = 0
+
+    def planned(self, total: int, present: int) -> None:
+        self.present = present
+
+    def finished(self, row: Row) -> None:
+        self.rows.append(row)
+
+
+def row_of(models: Models, combination: str) -> Row:
+    detector = combination.split("-")[0]
+    return next(row for row in models.table().to_dicts() if row["detector"] == detector)
+
+
+def test_a_model_agrees_with_the_truth(models: Models) -> None:
+    row = row_of(models, SIFT)
+    assert row["status"] == "ok"
+    assert (row["images"], row["registered_images"], row["components"]) == (9, 9, 1)
+    assert row["truth"] == "poses"
+    assert row["position_rmse"] < 0.05
+    assert row["position_error_share"] == pytest.approx(row["position_rmse"] / 25.46, rel=0.01)
+    assert row["rotation_error"] < 0.1
+    assert row["surface_error"] < 0.1
+    assert row["focal_length"] == 420
+    assert row["reprojection_error"] < 0.2
+    assert row["intrinsics"] == "fixed (truth)"
+    assert (row["reference"], row["cloud_distance_rms"]) == (SIFT, 0)
+
+
+def test_figures_are_those_of_colmap(models: Models) -> None:
+    for row in models.table().to_dicts():
+        name = "-".join(row[part] for part in ("detector", "descriptor", "norm", "matcher"))
+        model = pycolmap.Reconstruction(str(models.path(name) / "sparse" / "0"))
+        assert row["registered_images"] == model.num_reg_images()
+        assert row["points_3d"] == model.num_points3D()
+        assert row["observations"] == model.compute_num_observations()
+        assert row["mean_track_length"] == pytest.approx(model.compute_mean_track_length())
+        error = model.compute_mean_reprojection_error()
+        assert row["reprojection_error"] == pytest.approx(error)
+        assert row["pairs"] == 36
+        assert row["verified_pairs"] <= row["linked_pairs"] <= 36
+        assert 0 < row["verified_matches"] < row["matches"]
+        stages = ("feature", "matching", "verification", "mapping")
+        seconds = [row[f"{stage}_seconds"] for stage in stages]
+        assert min(seconds) > 0
+        assert row["reconstruction_seconds"] == pytest.approx(sum(seconds))
+
+
+def test_every_file_opens_elsewhere(models: Models) -> None:
+    place = models.path(SIFT)
+    text = pycolmap.Reconstruction(str(place / "text"))
+    assert text.num_points3D() == row_of(models, SIFT)["points_3d"]
+    cloud = PlyData.read(str(place / "points.ply"))["vertex"]
+    assert len(cloud) == text.num_points3D()
+    assert len(np.unique(cloud["red"])) > 20
+    assert models.picture(SIFT).read_bytes().startswith(b"\x89PNG")
+    database = pycolmap.Database.open(place / "database.db")
+    assert database.num_images() == 9
+    assert database.num_verified_image_pairs() == row_of(models, SIFT)["verified_pairs"]
+    database.close()
+    found = models.cloud(SIFT)
+    assert found is not None
+    assert found.unit == "m"
+    np.testing.assert_allclose(found.centres, found.positions, atol=0.1)
+    # Cameras look down, and the image's y runs to the south.
+    np.testing.assert_allclose(found.rotations[:, 2, 2], -1, atol=0.02)
+    assert np.median(found.points[:, 2]) < 9.5
+
+
+@pytest.mark.skipif(shutil.which("colmap") is None, reason="Debian's colmap is not installed")
+def test_colmap_itself_reads_the_model(models: Models) -> None:
+    words = ["colmap", "model_analyzer", "--path", str(models.path(SIFT) / "sparse" / "0")]
+    told = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert f"Points: {row_of(models, SIFT)['points_3d']}" in told.stdout + told.stderr
+
+
+def test_the_same_again_gives_the_same_model_and_redoes_nothing(
+    models: Models, landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    first = Counting()
+    again = aerocues.reconstruct(landscape, empty, SIFT, options=quick, observer=first)
+    assert (first.present, len(first.rows)) == (0, 1)
+    for name in MODEL:
+        mine = (again.path(SIFT) / "sparse" / "0" / name).read_bytes()
+        assert mine == (models.path(SIFT) / "sparse" / "0" / name).read_bytes(), name
+    assert again.cloud(SIFT).content() == models.cloud(SIFT).content()  # type: ignore[union-attr]
+
+    second = Counting()
+    aerocues.reconstruct(landscape, empty, SIFT, options=quick, observer=second)
+    assert (second.present, second.rows) == (1, [])
+
+    # Other settings of the mapper: a new model out of the same matches.
+    protocol = replace(quick.protocol, mapper="global")
+    third = Counting()
+    changed = aerocues.reconstruct(
+        landscape, empty, SIFT, options=replace(quick, protocol=protocol), observer=third
+    )
+    [row] = third.rows
+    assert row["matching_seconds"] == first.rows[0]["matching_seconds"]
+    assert (row["status"], row["mapper"]) == ("ok", "global")
+    assert row_of(changed, SIFT)["position_rmse"] < 0.2
+
+
+def test_a_damaged_database_or_file_of_matches_does_no_harm(
+    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(models.folder, copy)
+    place = copy / SIFT
+    (place / "outcome.json").write_text("{ half")
+    (place / "database.db").write_bytes(b"this is no database" * 1000)
+    (place / "matches.npz").write_bytes(b"PK\x03\x04 nor is this")
+    seen = Counting()
+    again = aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    assert [row["status"] for row in seen.rows] == ["ok"]
+    mine = (again.path(SIFT) / "sparse" / "0" / "points3D.bin").read_bytes()
+    assert mine == (models.path(SIFT) / "sparse" / "0" / "points3D.bin").read_bytes()
+
+
+@pytest.mark.slow
+def test_refined_intrinsics_and_undistorted_images(
+    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    images = [replace(image, truth=None) for image in landscape.images]
+    protocol = replace(quick.protocol, intrinsics="refine")
+    options = replace(quick, protocol=protocol, wanted=Wanted(colours=False, undistorted=True))
+    made = aerocues.reconstruct(scene_of(images), empty, SIFT, options=options)
+    row = row_of(made, SIFT)
+    assert row["status"] == "ok"
+    assert row["intrinsics"] == "refine (guessed)"
+    assert row["position_rmse"] is None
+    assert row["length_unit"] == "unit"
+    dense = made.path(SIFT) / "undistorted"
+    assert len(list((dense / "images").iterdir())) == 9
+    assert pycolmap.Reconstruction(str(dense / "sparse")).num_reg_images() == 9
+
+
+def test_a_focal_length_that_is_not_known_must_be_given_to_stay_fixed(
+    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    images = [replace(image, truth=None) for image in landscape.images]
+    with pytest.raises(ReconstructionError, match=r"9 of 9 images is not known .* --focal-length"):
+        aerocues.reconstruct(scene_of(images), empty, SIFT, options=quick)
+
+
+def test_scenes_that_have_no_depth_are_refused(empty: Path) -> None:
+    with pytest.raises(ReconstructionError, match="related by homographies"):
+        aerocues.reconstruct("synthetic", empty, SIFT)
+
+
+def test_several_scenes_must_be_told_apart(landscape: Dataset, empty: Path) -> None:
+    pairs = [replace(pair, sequence=f"part {pair.index % 2}") for pair in landscape.pairs]
+    with pytest.raises(ReconstructionError, match=r"2 scenes .* --sequences"):
+        aerocues.reconstruct(replace(landscape, pairs=pairs), empty, SIFT)
+
+
+def test_a_reference_must_be_among_the_combinations(landscape: Dataset, empty: Path) -> None:
+    options = ReconstructionOptions(reference="ORB-ORB-HAM-BF")
+    with pytest.raises(ReconstructionError, match="not among the combinations"):
+        aerocues.reconstruct(landscape, empty, SIFT, options=options)
+    with pytest.raises(ReconstructionError, match="no combinations"):
+        aerocues.reconstruct(landscape, empty)
+
+
+def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> None:
+    empty.mkdir()
+    (empty / "letter.txt").write_text("dear")
+    with pytest.raises(StoreError, match=r"holds other files \(letter.txt"):
+        aerocues.reconstruct(landscape, empty, SIFT)
+    with pytest.raises(StoreError, match=r"no folder of models"):
+        Models(empty)
