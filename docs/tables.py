@@ -12,6 +12,7 @@ from pathlib import Path
 
 from aerocues.evaluation import schema
 from aerocues.evaluation.metrics import METRICS
+from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
 from aerocues.evaluation.schema import Column
 from aerocues.evaluation.statuses import STATUSES
 from aerocues.methods.compatibility import incompatibility, why_meaningless
@@ -161,9 +162,16 @@ def criteria() -> Iterator[tuple[str, ...]]:
         yield f"`{each.name}`", each.better, each.description, of
 
 
+def reconstruction_statuses() -> Iterator[tuple[str, ...]]:
+    """One row a status of a reconstruction."""
+    yield "status", "meaning", "made again by `--retry-failed`"
+    for status in RECONSTRUCTION_STATUSES:
+        yield f"`{status.name}`", status.meaning, "yes" if status.retried else ""
+
+
 def reconstructions() -> Iterator[tuple[str, ...]]:
     """Columns of the figures of reconstructions."""
-    return _columns(schema.RECONSTRUCTIONS)
+    return _columns(RECONSTRUCTIONS)
 
 
 Table = Callable[[], Iterator[tuple[str, ...]]]
@@ -171,7 +179,8 @@ TABLES: dict[str, tuple[Table, ...]] = {
     "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
     "metrics.md": (counts, metrics, ground_truth, times),
-    "results.md": (names, provenance, reconstructions),
+    "reconstruction.md": (reconstruction_statuses, reconstructions),
+    "results.md": (names, provenance),
     "scoring.md": (weight_methods, score_presets, criteria),
 }
 

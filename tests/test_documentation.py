@@ -10,12 +10,16 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from docs.tables import TABLES, rendered
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
@@ -148,21 +152,29 @@ def write_view(path: Path, picture: NDArray[np.uint8], shift: int, exif: bytes =
     Image.fromarray(view).save(path, exif=exif)
 
 
+def focal_length(exif: Image.Exif) -> bytes:
+    """The same EXIF data with a focal length of 24 mm on 35 mm film."""
+    exif[0x8769] = {0xA405: 24}
+    return exif.tobytes()
+
+
 def gps(latitude: float) -> bytes:
-    """EXIF data with a position."""
+    """EXIF data with a position and a focal length."""
     from PIL import Image
 
     degrees = int(latitude)
     minutes = (latitude - degrees) * 60
     exif = Image.Exif()
     exif[0x8825] = {1: "N", 2: (degrees, minutes, 0.0), 3: "E", 4: (35.0, 19.0, 0.0), 6: 150.0}
-    return exif.tobytes()
+    return focal_length(exif)
 
 
 def write_stand_in_data(folder: Path) -> None:
     """Small images under every name that the guide uses for images."""
+    from PIL import Image
+
     for shift, name in ((0, "a.png"), (9, "b.png")):
-        write_view(folder / "photos" / name, scene(1), shift)
+        write_view(folder / "photos" / name, scene(1), shift, focal_length(Image.Exif()))
     for number in range(3):
         position = gps(37.05 + number * 0.0002)
         write_view(folder / "flight" / f"{number}.jpg", scene(2), 8 * number, position)

@@ -50,7 +50,8 @@ def _texture(generator: np.random.Generator, width: int, height: int) -> NDArray
         grown = cv2.resize(small.astype(np.float32), (width, height), interpolation=cv2.INTER_CUBIC)
         picture += weight * grown
     low, high = picture.min(), picture.max()
-    return ((picture - low) * (255 / (high - low))).astype(np.uint8)
+    stretched: NDArray[np.uint8] = ((picture - low) * (255 / (high - low))).astype(np.uint8)
+    return stretched
 
 
 def landscape(seed: int = 0, *, roofs: int = 14) -> list[Plane]:

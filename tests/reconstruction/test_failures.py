@@ -45,7 +45,9 @@ def scene(folder: Path, picture: Picture, count: int = 4) -> Dataset:
     return scene_of(images)
 
 
-def only_row(dataset: Dataset, output: Path, options: ReconstructionOptions, name: str = ORB) -> Row:
+def only_row(
+    dataset: Dataset, output: Path, options: ReconstructionOptions, name: str = ORB
+) -> Row:
     [row] = aerocues.reconstruct(dataset, output, name, options=options).table().to_dicts()
     return row
 

@@ -22,7 +22,7 @@ from aerocues.reconstruction.scene import Wanted
 from tests.reconstruction.scenes import scene_of
 
 SIFT = "SIFT-SIFT-L2-FLANN"
-MODEL = "cameras.bin frames.bin images.bin points3D.bin rigs.bin".split()
+MODEL = ["cameras.bin", "frames.bin", "images.bin", "points3D.bin", "rigs.bin"]
 
 
 class Counting(ReconstructionObserver):
@@ -40,7 +40,7 @@ class Counting(ReconstructionObserver):
 
 
 def row_of(models: Models, combination: str) -> Row:
-    detector = combination.split("-")[0]
+    detector = combination.split("-", maxsplit=1)[0]
     return next(row for row in models.table().to_dicts() if row["detector"] == detector)
 
 

@@ -86,7 +86,9 @@ class Cloud:
     def content(self) -> bytes:
         """The cloud as the content of a file; the same cloud gives the same bytes."""
         file = io.BytesIO()
-        arrays = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
+        arrays: dict[str, Any] = {
+            field.name: np.asarray(getattr(self, field.name)) for field in fields(self)
+        }
         np.savez_compressed(file, **arrays)  # zip entries without a date
         return file.getvalue()
 

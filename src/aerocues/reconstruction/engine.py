@@ -51,9 +51,12 @@ def _child(scene: Scene, limits: ReconstructionLimits) -> ChildProcess:
 
 
 def prepare_images(
-    scene: Scene, limits: ReconstructionLimits, progress: Callable[[int, int], None]
+    scene: Scene,
+    images: Sequence[str],
+    limits: ReconstructionLimits,
+    progress: Callable[[int, int], None],
 ) -> list[Prepared]:
-    """Put all images into the folder of the scene, in a child process.
+    """Put images into the folder of the scene, in a child process.
 
     Raises
     ------
@@ -61,17 +64,19 @@ def prepare_images(
         If an image cannot be read or written.
     """
     prepared: list[Prepared] = []
+    if not images:
+        return prepared
     child = _child(scene, limits)
     try:
-        for image in scene.dataset.images:
-            child.send(image.name)
+        for image in images:
+            child.send(image)
             found = child.receive()
             if isinstance(found, Exception):
                 raise found
             if isinstance(found, Loss):
-                raise AerocuesError(f"{image.name}: {found.message}; take it out of the folder")
+                raise AerocuesError(f"{image}: {found.message}; take it out of the folder")
             prepared.append(found)
-            progress(len(prepared), len(scene.dataset.images))
+            progress(len(prepared), len(images))
     finally:
         child.stop()
     return prepared

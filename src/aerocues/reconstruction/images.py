@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections import defaultdict
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +16,11 @@ from aerocues.datasets.dataset import Dataset, Image, PinholeCamera
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.header import read_header
 from aerocues.errors import ImageError, ReconstructionError
+from aerocues.evaluation.whole_files import json_content, write_whole
 from aerocues.reconstruction.protocol import ReconstructionProtocol
-from aerocues.reconstruction.scene import CameraGroup
+from aerocues.reconstruction.scene import IMAGES, CameraGroup
 
+LIST = "images.json"
 JPEG_QUALITY = 95
 HALF_PIXEL = 0.5
 
@@ -52,6 +56,25 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
     if isinstance(source, FileSource):
         focal_length = _exif_focal_length(source, max(width, height))
     return Prepared(image.name, width, height, focal_length)
+
+
+def read_prepared(folder: Path, keys: Mapping[str, str]) -> dict[str, Prepared]:
+    """The images that a folder of models has already, as they are now."""
+    try:
+        stored = json.loads((folder / LIST).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return {
+        name: Prepared(**stored[name]["image"])
+        for name, key in keys.items()
+        if name in stored and stored[name]["key"] == key and (folder / IMAGES / name).is_file()
+    }
+
+
+def write_prepared(folder: Path, keys: Mapping[str, str], prepared: Mapping[str, Prepared]) -> None:
+    """Remember which images are there; OSError where there is no room."""
+    listed = {name: {"key": keys[name], "image": asdict(each)} for name, each in prepared.items()}
+    write_whole({folder / LIST: json_content(listed)})
 
 
 def _as_it_is(source: FileSource) -> bool:

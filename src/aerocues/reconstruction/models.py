@@ -14,6 +14,7 @@ from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES
 from aerocues.evaluation.reconstructions import reconstruction_table
 from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
 from aerocues.methods.combination import Combination
+from aerocues.reconstruction.images import LIST
 from aerocues.reconstruction.one_model import CLOUD, PICTURE
 from aerocues.reconstruction.scene import FEATURES, IMAGES
 
@@ -60,7 +61,7 @@ class Models:
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give -o the name of a folder")
         if folder.is_dir() and not (folder / SETTINGS).exists():
-            own = (IMAGES, FEATURES)
+            own = (IMAGES, FEATURES, LIST)
             others = [p.name for p in folder.iterdir() if p.name not in own and p.name[0] != "."]
             if others:
                 raise StoreError(

@@ -29,7 +29,7 @@ from aerocues.reconstruction.engine import (
     run_reconstructions,
 )
 from aerocues.reconstruction.feature_files import remove_features
-from aerocues.reconstruction.images import cameras_of
+from aerocues.reconstruction.images import cameras_of, read_prepared, write_prepared
 from aerocues.reconstruction.models import (
     RETRIED,
     SETTINGS,
@@ -135,7 +135,13 @@ def _chosen(scene: Scene, combinations: str | Iterable[str | Combination]) -> li
 def _with_cameras(
     scene: Scene, limits: ReconstructionLimits, observer: ReconstructionObserver
 ) -> Scene:
-    prepared = prepare_images(scene, limits, observer.preparing)
+    """The scene with its images in the folder, those that were not there yet, and their cameras."""
+    known = read_prepared(scene.folder, scene.image_keys)
+    left = [image.name for image in scene.dataset.images if image.name not in known]
+    for each in prepare_images(scene, left, limits, observer.preparing):
+        known[each.name] = each
+    write_prepared(scene.folder, scene.image_keys, known)
+    prepared = [known[image.name] for image in scene.dataset.images]
     return replace(scene, cameras=cameras_of(scene.dataset, prepared, scene.protocol))
 
 

@@ -1,0 +1,148 @@
+"""`aerocues reconstruct`: from a folder of images to models, figures in results, interruption."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import polars as pl
+import psutil
+import pytest
+
+from aerocues.results import Results
+from tests.cli.conftest import Call
+from tests.reconstruction.scenes import GRID, write_scene
+
+PROGRAM = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from aerocues.cli import main; main()"
+)
+NAMES = "SIFT-SIFT-L2-FLANN,AKAZE-AKAZE-HAM-BF"
+OPTIONS = ("--focal-length", "420", "--max-keypoints", "800")
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of six overlapping photographs."""
+    folder = tmp_path_factory.mktemp("reconstruct") / "flight"
+    write_scene(folder, GRID[:6])
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_models_from_results_and_figures_into_them(
+    flight: Path, tmp_path: Path, call: Call
+) -> None:
+    results, models = tmp_path / "results", tmp_path / "models"
+    wanted = f"{NAMES},ORB-ORB-HAM-BF"
+    assert call("run", flight, "-o", results, "--combinations", wanted, "--workers", 1).code == 0
+    words = ("reconstruct", flight, "-o", models, "--from", results, "--top", 2, *OPTIONS)
+    answer = call(*words)
+    assert answer.code == 0, answer.err
+    assert "flight: 6 images, 15 pairs (exhaustive), intrinsics fixed (given)" in answer.out
+    assert answer.out.count("6/6") == 2
+    assert answer.err.splitlines()[0].startswith("1 of 2  ")
+    assert f"next     aerocues score {results} --reconstruction" in answer.out
+    assert max(len(line) for line in answer.out.splitlines() if "flight" not in line) <= 100
+
+    figures = Results(results).reconstructions()
+    assert figures["status"].to_list() == ["ok", "ok"]
+    assert figures["settings_key"].n_unique() == 1
+    for key in figures["row_key"]:
+        cloud = Results(results).cloud(key)
+        assert cloud is not None
+        assert len(cloud.names) == 6
+    written = pl.read_csv(models / "reconstructions.csv")
+    assert written["points_3d"].to_list() == figures["points_3d"].to_list()
+
+    again = call(*words)
+    assert again.err == "2 of 2 models are there already\n"
+    scored = call("score", results, "--criteria", "precision,points_3d,registered_images")
+    assert scored.code == 2  # the share of the images is the criterion
+    scored = call("score", results, "--criteria", "precision,points_3d,reprojection_error")
+    assert scored.code == 0, scored.err
+    packed = tmp_path / "packed.zip"
+    assert call("results", results, "--pack", packed).code == 0
+    assert Results(packed).cloud(figures["row_key"][0]) is not None
+
+    # Other settings: what they are not comparable with goes.
+    changed = call(*words[:-1], 700, "--top", 1)
+    assert changed.code == 0, changed.err
+    assert Results(results).reconstructions()["max_keypoints"].to_list() == [700]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ((), "no combinations: name some with --combinations, or results with --from"),
+        (("--combinations", "NONE-*"), "no combination matches 'NONE-*'"),
+        (("--combinations", NAMES), "the focal length of 6 of 6 images is not known"),
+        (("--combinations", NAMES, "--top", "3"), "--top chooses out of --from"),
+        (("--combinations", NAMES, "--pairs", "gps"), "have no GPS position"),
+        (("--combinations", NAMES, "--mapper", "other"), "Invalid value for '--mapper'"),
+        (("--combinations", NAMES, "--reference", "ORB-ORB-HAM-BF"), "not among the combinations"),
+        (("--from", "nowhere"), "nowhere is no results folder"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(
+    flight: Path, tmp_path: Path, call: Call, words: tuple[str, ...], message: str
+) -> None:
+    answer = call("reconstruct", flight, "-o", tmp_path / "models", *words)
+    assert answer.code == 2
+    assert message in answer.err
+    assert len(answer.err.splitlines()) == 1
+
+
+def test_one_image_and_other_scenes_are_refused(
+    flight: Path, finished: Path, tmp_path: Path, call: Call
+) -> None:
+    single = tmp_path / "single"
+    single.mkdir()
+    (single / "only.png").write_bytes((flight / "view_0.png").read_bytes())
+    answer = call("reconstruct", single, "-o", tmp_path / "models", "--combinations", NAMES)
+    assert (answer.code, "holds one image only" in answer.err) == (2, True)
+    answer = call("reconstruct", flight, "-o", tmp_path / "models", "--from", finished, *OPTIONS)
+    assert answer.code == 2
+    assert "holds results of photos and not of flight" in answer.err
+
+
+def begin(flight: Path, output: Path) -> subprocess.Popen[str]:
+    words = ["reconstruct", str(flight), "-o", str(output), "--workers", "1", *OPTIONS]
+    words += ["--combinations", f"{NAMES},ORB-*-HAM-BF,BRISK-*-HAM-BF"]
+    return subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_what_is_finished_is_not_made_again(
+    flight: Path, tmp_path: Path, number: signal.Signals, call: Call
+) -> None:
+    output = tmp_path / "models"
+    process = begin(flight, output)
+    while len(outcomes := sorted(output.glob("*/outcome.json"))) < 2:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+    children = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    _, alive = psutil.wait_procs(children, timeout=15)
+    assert alive == []
+    if number == signal.SIGINT:
+        assert process.returncode == 130
+        assert err.splitlines()[-1].startswith("interrupted; ")
+        assert "Traceback" not in err
+    before = {path: path.stat().st_mtime_ns for path in outcomes}
+    names = ",".join(path.parent.name for path in outcomes)
+    answer = call("reconstruct", flight, "-o", output, "--combinations", names, *OPTIONS)
+    assert answer.code == 0
+    assert answer.err == f"{len(outcomes)} of {len(outcomes)} models are there already\n"
+    assert {path: path.stat().st_mtime_ns for path in outcomes} == before
