@@ -8,8 +8,8 @@ import polars as pl
 import pytest
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.results import Results
 from aerocues.evaluation.reconstruction_schema import RECONSTRUCTIONS
+from aerocues.evaluation.results import Results
 from aerocues.evaluation.store import Store
 
 NAMES = [column.name for column in RECONSTRUCTIONS]
