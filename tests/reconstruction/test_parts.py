@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from aerocues.methods.arrays import Keypoints
-from aerocues.methods.strongest import strongest
+from aerocues.methods.registry import opencv_methods
+from aerocues.methods.strongest import limited, strongest
 from aerocues.reconstruction.diagnosis import judged, without_features, without_links
 from aerocues.reconstruction.match_graph import parts_of, told_parts
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
@@ -51,6 +52,16 @@ def test_equal_responses_favour_no_part_of_the_image() -> None:
     assert 300 < kept.xy[:, 0].mean() / 2 < 700
     again = strongest(keypoints([0.0] * 1000), 100, seed=0)
     np.testing.assert_array_equal(kept.xy, again.xy)
+
+
+def test_detectors_that_limit_themselves_are_told_to() -> None:
+    methods = limited(opencv_methods(), 4000)
+    assert methods.detectors["ORB"].parameters["nfeatures"] == 4000
+    assert methods.detectors["GFTT_H"].parameters["maxCorners"] == 4000
+    assert methods.detectors["AKAZE"] == opencv_methods().detectors["AKAZE"]
+    assert limited(opencv_methods(), 0) == opencv_methods()
+    raised = limited(methods, 9000)
+    assert raised.detectors["ORB"].parameters["nfeatures"] == 4000
 
 
 def matched() -> MatchedScene:

@@ -29,6 +29,8 @@ class DetectorRow:
         Typical time, for the same use.
     unstable : bool
         Whether it is known to corrupt the memory of its process: it then gets a process of its own.
+    limit : str or None
+        The parameter by which it chooses the best so many keypoints itself.
     origin : str
         ``opencv`` or the name of the distribution that brings it.
     unavailable : str or None
@@ -42,6 +44,7 @@ class DetectorRow:
     keypoints_per_megapixel: float = 10_000
     seconds_per_megapixel: float = 0.5
     unstable: bool = False
+    limit: str | None = None
     origin: str = OPENCV
     unavailable: str | None = None
 
@@ -60,6 +63,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Lowe, Distinctive image features from scale-invariant keypoints, IJCV 2004",
         8_000,
         0.25,
+        limit="nfeatures",
     ),
     DetectorRow(
         "AKAZE",
@@ -95,6 +99,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Rublee et al., ORB: an efficient alternative to SIFT or SURF, ICCV 2011",
         25_000,
         0.04,
+        limit="nfeatures",
     ),
     DetectorRow(
         "BRISK",
@@ -169,6 +174,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Shi and Tomasi, Good features to track, CVPR 1994",
         25_000,
         0.03,
+        limit="maxCorners",
     ),
     DetectorRow(
         "GFTT_H",
@@ -184,6 +190,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Harris and Stephens, A combined corner and edge detector, AVC 1988",
         5_000,
         0.03,
+        limit="maxCorners",
     ),
     DetectorRow(
         "STAR",
@@ -212,6 +219,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Mikolajczyk and Schmid, Scale and affine invariant interest point detectors, IJCV 2004",
         15_000,
         3.0,
+        limit="maxCorners",
     ),
     DetectorRow(
         "MSD",

@@ -22,6 +22,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import preset_named
 from aerocues.methods.selection import select
+from aerocues.methods.strongest import limited
 from aerocues.reconstruction.engine import (
     ReconstructionLimits,
     in_groups,
@@ -102,7 +103,7 @@ def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Sc
     chance = ChanceTest() if preset.chance_test else None
     return Scene(
         dataset=dataset,
-        methods=installed_methods().with_preset(preset),
+        methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
         preset=preset.name,
         protocol=replace(options.protocol, chance=chance),
         folder=output.absolute(),
