@@ -13,7 +13,8 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.store import CLOUDS, PARTS, PLAN, RECONSTRUCTED, RUN, Store
+from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED
+from aerocues.evaluation.store import PARTS, PLAN, RUN, Store
 from aerocues.evaluation.whole_files import json_content, parquet_content
 
 if TYPE_CHECKING:

@@ -10,15 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.clouds import Cloud, read_cloud
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
-from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS
-from aerocues.evaluation.reconstructions import reconstruction_table
+from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
-from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
+from aerocues.evaluation.whole_files import json_content, parquet_content
 
 if TYPE_CHECKING:
     import polars as pl
@@ -26,18 +24,16 @@ if TYPE_CHECKING:
 PARTS = "parts"
 RUN = "run.json"
 PLAN = "plan.parquet"
-RECONSTRUCTED = "reconstructions.parquet"
-CLOUDS = "clouds"
 OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
 LONGEST_LIST = 12
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
 
 
-class Store:
+class Store(ReconstructionStore):
     """Results in a folder. A part is written beside and renamed: there is never half a file."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
+        super().__init__(folder)
         self._parts = folder / PARTS
 
     @classmethod
@@ -121,87 +117,10 @@ class Store:
         """Store the configuration, the versions and the machine of the latest run."""
         self._write(self.folder / RUN, json_content(facts))
 
-    def _write(self, target: Path, content: bytes) -> None:
-        try:
-            write_whole({target: content})
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise StoreError(
-                f"cannot write {target}: {reason}; what was finished is kept: make room or access "
-                "and run the same command again"
-            ) from error
-
     def write_plan(self, rows: pl.DataFrame) -> None:
         """Add the planned rows of a run; see `planned_rows.merge_plans`."""
         merged = merge_plans(self._all_planned(rows), rows)
         self._write(self.folder / PLAN, parquet_content(merged))
-
-    def write_reconstructions(self, figures: pl.DataFrame) -> None:
-        """Store the figures of 3D reconstructions; those that are there are replaced.
-
-        Parameters
-        ----------
-        figures : pl.DataFrame
-            Columns of `schema.RECONSTRUCTIONS`, one row a dataset and combination; a column that
-            is missing is unknown in all rows.
-        """
-        self._write(self.folder / RECONSTRUCTED, parquet_content(reconstruction_table(figures)))
-
-    def add_reconstructions(self, figures: pl.DataFrame) -> None:
-        """Add figures of one dataset; those of other settings go, as they are not comparable.
-
-        Parameters
-        ----------
-        figures : pl.DataFrame
-            Of one dataset and under one ``settings_key``.
-        """
-        import polars as pl
-
-        new = reconstruction_table(figures)
-        same = (pl.col("dataset") == new["dataset"][0]) & (
-            (pl.col("settings_key") != new["settings_key"][0]) | pl.col("settings_key").is_null()
-        )
-        kept = self.reconstructions().filter(~same)
-        kept = kept.join(new, on=RECONSTRUCTION_IDENTITY, how="anti")
-        self.write_reconstructions(pl.concat([kept, new]))
-
-    def reconstructions(self) -> pl.DataFrame:
-        """The figures of 3D reconstructions, by dataset and combination; often none."""
-        import polars as pl
-
-        schema = pl.Schema(polars_schema(RECONSTRUCTIONS))
-        if not (self.folder / RECONSTRUCTED).is_file():
-            return pl.DataFrame(schema=schema)
-        file = self.folder / RECONSTRUCTED
-        return self._collect(
-            pl.scan_parquet(file, schema=schema, missing_columns="insert", extra_columns="ignore")
-        )
-
-    def write_cloud(self, row_key: str, cloud: Cloud) -> None:
-        """Store the cloud of the reconstruction whose row has this key."""
-        folder = self.folder / CLOUDS
-        folder.mkdir(exist_ok=True)
-        self._write(folder / f"{row_key}.npz", cloud.content())
-
-    def cloud(self, row_key: str) -> Cloud | None:
-        """The cloud of a reconstruction; None where there is none.
-
-        Raises
-        ------
-        StoreError
-            If its file is damaged or cannot be read.
-        """
-        file = self.folder / CLOUDS / f"{row_key}.npz"
-        if not file.is_file():
-            return None
-        try:
-            return read_cloud(file.read_bytes(), file)
-        except OSError as error:
-            raise StoreError(f"cannot read {file}: {error.strerror}; check its access") from error
-
-    def cloud_files(self) -> list[Path]:
-        """The files of all clouds."""
-        return sorted((self.folder / CLOUDS).glob("*.npz"))
 
     def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
         return self.plan() if (self.folder / PLAN).is_file() else empty.clear()
@@ -301,14 +220,3 @@ class Store:
             missing_columns="insert",
             extra_columns="ignore",
         )
-
-    def _collect(self, rows: pl.LazyFrame) -> pl.DataFrame:
-        import polars as pl
-
-        try:
-            return rows.collect()
-        except (pl.exceptions.PolarsError, OSError) as error:
-            raise StoreError(
-                f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
-                "remove the damaged part and run the same command again"
-            ) from error

@@ -29,7 +29,7 @@ class Requirements:
     """
 
     registered_share: float = 0.8
-    position_error_share: float = 0.05
+    position_error_share: float = 0.03
     position_error_metres: float = 5.0
 
 
