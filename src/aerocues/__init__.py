@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from aerocues.report.report import write_report
     from aerocues.results import Results
     from aerocues.scoring.measured import score
+    from aerocues.scoring.outcomes import relate_outcomes
     from aerocues.scoring.ranking import Ranking
 
     __version__: str
@@ -47,6 +48,7 @@ _MODULES = {
     "ReconstructionProtocol": "reconstruction.protocol",
     "Models": "reconstruction.models",
     "score": "scoring.measured",
+    "relate_outcomes": "scoring.outcomes",
     "Ranking": "scoring.ranking",
     "write_report": "report.report",
     "Combination": "methods.combination",
@@ -74,6 +76,7 @@ __all__ = [
     "import_results",
     "open_dataset",
     "reconstruct",
+    "relate_outcomes",
     "run",
     "score",
     "write_report",

@@ -11,6 +11,7 @@ import pytest
 
 import aerocues
 from tests.cli.conftest import Call
+from tests.report.made_up_models import MODELLED, STATUSES, with_models
 
 CRITERIA = "precision,inliers,total_seconds"
 
@@ -107,6 +108,18 @@ def test_wrong_choices_are_told_in_one_line(
     assert answer.err.startswith("error: ")
     assert told in answer.err
     assert answer.err.count("\n") == 1
+
+
+def test_failed_reconstructions_count_as_failures(call: Call, tmp_path: Path) -> None:
+    folder = with_models(tmp_path).folder
+    chosen = ["--criteria", "precision,points_3d,registered_share", "--resamples", 10]
+    ranking = json.loads(call("score", folder, *chosen, "--json").out)["ranking"]
+    assert len(ranking) == len(MODELLED)  # all have a score
+    status = dict(zip(MODELLED, STATUSES, strict=True))
+    for row in ranking:
+        known = row["registered_share"] is not None
+        assert known == (status[row["combination"]] == "ok")
+    assert status[ranking[0]["combination"]] == "ok"
 
 
 def test_validation_has_all_its_sections(call: Call, finished: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import polars as pl
 import pytest
 
 from aerocues.errors import ScoreError
@@ -160,3 +161,19 @@ def test_failing_on_the_hard_pair_pays_by_the_thesis_and_costs_by_default() -> N
     assert by_thesis["alternative"].to_list() == [SIFT, ORB]
     assert by_default["alternative"].to_list() == [ORB, SIFT]
     assert by_default["success_rate"].to_list() == [1.0, 0.5]
+
+
+def test_criteria_of_a_reconstruction_may_be_expressions() -> None:
+    whole = models({ORB: (0.5, 9000, 20), SIFT: (0.4, 20, 9), AKAZE: None}).with_columns(
+        pl.Series("status", ["ok", "incomplete", "error"]),
+        pl.Series("registered_images", [16, 4, None]),
+        images=pl.lit(20),
+    )
+    names = ["precision", "points_3d", "registered_share"]
+    table = table_of(Stored(MEASURED, whole), criteria=names).table
+    by_name = dict(zip(table.alternatives, range(3), strict=True))
+    np.testing.assert_array_equal(table.values[by_name[ORB], :, 1:], [[9000, 0.8]] * 2)
+    # A model that is no success has failed, though it has images and points.
+    for failed in (SIFT, AKAZE):
+        assert table.failed[by_name[failed], :, 1:].all()
+        assert np.isnan(table.values[by_name[failed], :, 1:]).all()

@@ -1,4 +1,4 @@
-"""Correlations between criteria, and between rankings."""
+"""Correlations between criteria, between rankings, and of figures with outcomes."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from aerocues.scoring.cues import Scores
 
 Array = NDArray[np.float64]
+Measure = Callable[[Array, Array], float]
 FEWEST = 3
 
 
@@ -29,15 +30,41 @@ def rank_correlation(rows: Array, method: Literal["spearman", "kendall"] = "spea
     (rankings, rankings) float64
         NaN where fewer than 3 alternatives are in both or one ranks them all alike.
     """
+    # Rounded as for ranks: what differs by rounding only is equal.
+    return _pairwise(np.round(rows, 12), _rank_measure(method))
+
+
+def correlation_between(
+    rows: Array, others: Array, method: Literal["pearson", "spearman", "kendall"] = "pearson"
+) -> Array:
+    """Correlation of every row with every other one, over the columns where both have a value.
+
+    Parameters
+    ----------
+    rows : (rows, alternatives) float64
+        NaN where there is no value.
+    others : (others, alternatives) float64
+    method : {"pearson", "spearman", "kendall"}
+
+    Returns
+    -------
+    (rows, others) float64
+        NaN where fewer than 3 alternatives have both or one of the two does not vary.
+    """
+    measure = _pearson if method == "pearson" else _rank_measure(method)
+    found = [[_correlation(row, other, measure) for other in others] for row in rows]
+    return np.array(found, np.float64).reshape(len(rows), len(others))
+
+
+def _rank_measure(method: Literal["spearman", "kendall"]) -> Measure:
     from scipy.stats import kendalltau, spearmanr
 
-    # Rounded as for ranks: what differs by rounding only is equal.
     measures: dict[str, Callable[[Array, Array], Any]] = {
         "spearman": spearmanr,
         "kendall": kendalltau,
     }
     measure = measures[method]
-    return _pairwise(np.round(rows, 12), lambda a, b: float(measure(a, b).statistic))
+    return lambda a, b: float(measure(a, b).statistic)
 
 
 def criteria_correlation(scores: Scores) -> Array:
@@ -57,14 +84,20 @@ def _pearson(a: Array, b: Array) -> float:
     return float(np.corrcoef(a / np.abs(a).max(), b / np.abs(b).max())[0, 1])
 
 
-def _pairwise(rows: Array, measure: Callable[[Array, Array], float]) -> Array:
+def _pairwise(rows: Array, measure: Measure) -> Array:
     result = np.full((len(rows), len(rows)), np.nan)
     for first, a in enumerate(rows):
         for second in range(first, len(rows)):
-            b = rows[second]
-            both = ~np.isnan(a) & ~np.isnan(b)
-            varied = both.sum() >= FEWEST and np.ptp(a[both]) > 0 and np.ptp(b[both]) > 0
-            if varied:
-                value = 1.0 if first == second else measure(a[both], b[both])
-                result[first, second] = result[second, first] = value
+            value = _correlation(a, rows[second], measure)
+            if first == second and not np.isnan(value):
+                value = 1.0  # exactly
+            result[first, second] = result[second, first] = value
     return result
+
+
+def _correlation(a: Array, b: Array, measure: Measure) -> float:
+    """NaN where fewer than 3 have both values or one of the two does not vary."""
+    both = ~np.isnan(a) & ~np.isnan(b)
+    if both.sum() < FEWEST or np.ptp(a[both]) == 0 or np.ptp(b[both]) == 0:
+        return float("nan")
+    return measure(a[both], b[both])

@@ -140,6 +140,23 @@ _RECONSTRUCTION: tuple[Criterion, ...] = (
         reconstruction=True,
         description="seconds that the reconstruction takes",
     ),
+    Criterion(
+        "registered_share",
+        column="registered_images / images",
+        reconstruction=True,
+        description="images in the model / images of the scene",
+    ),
+    Criterion(
+        "mean_track_length",
+        reconstruction=True,
+        description="images that see a 3D point, on average",
+    ),
+    Criterion(
+        "position_error_share",
+        "lower",
+        reconstruction=True,
+        description="error of the camera positions / extent of the true ones",
+    ),
 )
 
 CRITERIA: tuple[Criterion, ...] = (*_BY_PAIRS, *_GROUND_TRUTH, *_RECONSTRUCTION)

@@ -87,7 +87,7 @@ def _numbers(frame: pl.DataFrame, criteria: Sequence[Criterion]) -> Any:
     """(rows, criteria) float64; NaN where a row has no number."""
     columns = []
     for criterion in criteria:
-        values = _values(frame, criterion)
+        values = values_of(frame, criterion)
         if not (values.dtype.is_numeric() or values.dtype in (pl.Boolean, pl.Null)):
             raise ScoreError(
                 f"criterion {criterion.name} holds {values.dtype}, not numbers; clean the column "
@@ -97,7 +97,8 @@ def _numbers(frame: pl.DataFrame, criteria: Sequence[Criterion]) -> Any:
     return np.stack(columns, axis=1)
 
 
-def _values(frame: pl.DataFrame, criterion: Criterion) -> pl.Series:
+def values_of(frame: pl.DataFrame, criterion: Criterion) -> pl.Series:
+    """The values of a criterion, one a row; ScoreError where a column that it needs is missing."""
     if criterion.source in frame.columns:
         return frame[criterion.source]
     try:

@@ -1,0 +1,254 @@
+"""Relates figures of image pairs to what became of the 3D reconstructions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.combinations import (
+    COMBINATION,
+    METHODS,
+    SUCCESS,
+    SUCCESS_WITHOUT_CHANCE_TEST,
+    suitable_preset,
+)
+from aerocues.scoring.correlation import FEWEST, correlation_between
+from aerocues.scoring.criteria import Better, criteria_named
+from aerocues.scoring.long_form import values_of
+from aerocues.scoring.measured import Measured, rows_of_dataset
+from aerocues.scoring.settings import preset_named
+
+if TYPE_CHECKING:
+    import polars as pl
+
+Array = NDArray[np.float64]
+SUCCESS_RATE = "success_rate"
+# Criteria of pairs whose means are related, those that the measurements have; of several
+# thresholds of the ground truth the middle one, as they say nearly the same.
+FEATURES = (
+    "inliers",
+    "matches",
+    "precision",
+    "recall",
+    "repeatability",
+    "f1_score",
+    "excess_inliers",
+    "precision_beyond_chance",
+    "recall_beyond_chance",
+    "repeatability_beyond_chance",
+    "f1_beyond_chance",
+    "total_seconds",
+    "gt_precision@3",
+    "gt_matching_score@3",
+    "gt_repeatability",
+    "homography_auc@3",
+)
+# How a reconstruction ends that holds no image. Where a program failed, nothing is known.
+WITHOUT_MODEL = ("no_features", "no_verified_pair", "no_initial_pair", "no_model")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A figure of a reconstruction.
+
+    Attributes
+    ----------
+    name : str
+    better : {"higher", "lower"}
+    of_model : bool
+        Whether it describes a model, so that only reconstructions that succeeded have it: broken
+        models have few points and a low reprojection error.
+    to_reference : bool
+        Whether it is a distance to a reference, which has none to itself.
+    """
+
+    name: str
+    better: Better = "higher"
+    of_model: bool = True
+    to_reference: bool = False
+
+
+OUTCOMES: tuple[Outcome, ...] = (
+    Outcome("registered_images", of_model=False),
+    Outcome("points_3d"),
+    Outcome("observations"),
+    Outcome("mean_track_length"),
+    Outcome("reprojection_error", "lower"),
+    Outcome("position_rmse", "lower"),
+    Outcome("rotation_error", "lower"),
+    Outcome("surface_error", "lower"),
+    Outcome("cloud_distance_rms", "lower", to_reference=True),
+    Outcome("reference_distance_rms", "lower", to_reference=True),
+    Outcome("reconstruction_seconds", "lower"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Relations:
+    """Correlations of figures of pairs with outcomes of reconstructions, over combinations.
+
+    Attributes
+    ----------
+    dataset : str
+    combinations : tuple of str
+        Measured and reconstructed.
+    features, outcomes : tuple of str
+        Those that vary.
+    feature_values : (combinations, features) float64
+        Means over the pairs that succeeded, and the share of those; NaN where there is none.
+    outcome_values : (combinations, outcomes) float64
+        NaN where it is not known, or describes a model that is no success.
+    pearson, spearman : (features, outcomes) float64
+    numbers : (features, outcomes) int64
+        Combinations behind each of them.
+    """
+
+    dataset: str
+    combinations: tuple[str, ...]
+    features: tuple[str, ...]
+    outcomes: tuple[str, ...]
+    feature_values: Array
+    outcome_values: Array
+    pearson: Array
+    spearman: Array
+    numbers: NDArray[np.int64]
+
+    def frame(self) -> pl.DataFrame:
+        """One row a feature and outcome: ``feature, outcome, combinations, pearson, spearman``."""
+        import polars as pl
+
+        rows, columns = len(self.features), len(self.outcomes)
+        return pl.DataFrame(
+            {
+                "feature": np.repeat(self.features, columns),
+                "outcome": np.tile(self.outcomes, rows),
+                "combinations": self.numbers.ravel(),
+                "pearson": self.pearson.ravel(),
+                "spearman": self.spearman.ravel(),
+            },
+            nan_to_null=True,
+        )
+
+
+def relate_outcomes(
+    results: Measured, preset: str | None = None, *, dataset: str | None = None
+) -> Relations:
+    """Tell what figures of image pairs say about reconstructions, over the combinations.
+
+    Figures that describe a model (3D points, errors, distances) are taken over the combinations
+    whose reconstruction succeeded, the number of registered images over all.
+
+    Parameters
+    ----------
+    results : Measured
+        Such as `aerocues.Results`.
+    preset : str, optional
+        A row of `settings.PRESETS`, which says whether pairs that do not beat chance have failed.
+    dataset : str, optional
+        Needed where there are several.
+
+    Raises
+    ------
+    ScoreError
+        If fewer than 3 combinations were both measured and reconstructed, or nothing varies.
+    """
+    import polars as pl
+
+    rows = rows_of_dataset(results.table(), dataset)
+    if rows.is_empty():
+        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+    chosen = preset_named(preset) if preset else suitable_preset(rows)
+    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    features = _features(rows.with_columns(name), chance_fails=chosen.chance_fails)
+    models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
+    joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
+    if len(joined) < FEWEST:
+        raise ScoreError(
+            f"{len(joined)} combinations were both measured and reconstructed, and a relation "
+            f"needs {FEWEST}; make more models with 'aerocues reconstruct'"
+        )
+    return _related(rows["dataset"][0], joined, features.columns[1:])
+
+
+def _features(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
+    """Means of each combination over its pairs that succeeded, and the share of those."""
+    import polars as pl
+
+    success = pl.col("status").is_in(SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST)
+    known: list[pl.Series] = []
+    for criterion in criteria_named(FEATURES):
+        try:
+            values = values_of(rows, criterion).cast(pl.Float64)
+        except ScoreError:
+            continue  # not measured
+        known.append(values.alias(criterion.name))
+    names = [values.name for values in known]
+    return (
+        rows.select(COMBINATION, success.alias(SUCCESS_RATE))
+        .with_columns(known)
+        .group_by(COMBINATION)
+        .agg(
+            pl.col(SUCCESS_RATE).cast(pl.Float64).mean(),
+            pl.col(names).filter(pl.col(SUCCESS_RATE) & pl.col(names).is_finite()).mean(),
+        )
+    )
+
+
+def _outcomes(models: pl.DataFrame) -> pl.DataFrame:
+    """The outcomes of each combination, null where they say nothing."""
+    return models.select(
+        COMBINATION, *(_outcome(models, outcome).alias(outcome.name) for outcome in OUTCOMES)
+    )
+
+
+def _outcome(models: pl.DataFrame, outcome: Outcome) -> pl.Expr:
+    import polars as pl
+
+    if outcome.name not in models.columns:
+        return pl.lit(None, pl.Float64)
+    value = pl.col(outcome.name).cast(pl.Float64)
+    if not outcome.of_model:
+        lost = pl.col("status").is_in(WITHOUT_MODEL) & value.is_not_null().any()
+        return pl.when(lost).then(value.fill_null(0)).otherwise(value)
+    says = pl.col("status").is_in(SUCCESS)
+    if outcome.to_reference and "reference" in models.columns:
+        says &= pl.col("reference") != pl.col(COMBINATION)
+    return pl.when(says).then(value)
+
+
+def _related(dataset: str, joined: pl.DataFrame, features: Sequence[str]) -> Relations:
+    varied = [_varying(joined, names) for names in (features, [each.name for each in OUTCOMES])]
+    if not all(varied):
+        raise ScoreError("nothing varies over the combinations; reconstruct with other ones, too")
+    first, second = (
+        joined.select(names).to_numpy().astype(np.float64).reshape(len(joined), len(names))
+        for names in varied
+    )
+    both = (~np.isnan(first)).T.astype(np.int64) @ (~np.isnan(second)).astype(np.int64)
+    return Relations(
+        dataset,
+        tuple(joined[COMBINATION]),
+        tuple(varied[0]),
+        tuple(varied[1]),
+        first,
+        second,
+        correlation_between(first.T, second.T, "pearson"),
+        correlation_between(first.T, second.T, "spearman"),
+        both,
+    )
+
+
+def _varying(table: pl.DataFrame, names: Sequence[str]) -> list[str]:
+    """The columns with 3 values or more that are not all the same."""
+
+    def known(name: str) -> Iterator[float]:
+        return (value for value in table[name].drop_nulls() if np.isfinite(value))
+
+    return [
+        name for name in names if len(list(known(name))) >= FEWEST and len(set(known(name))) > 1
+    ]
