@@ -1,0 +1,37 @@
+"""What is told while models are made."""
+
+from __future__ import annotations
+
+import pytest
+
+from aerocues.cli.reconstruction_progress import Reporter, told
+
+METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
+MADE = {
+    "registered_images": 12,
+    "images": 18,
+    "points_3d": 1323,
+    "reprojection_error": 0.967,
+    "position_rmse": 0.672,
+}
+
+
+def test_a_model_in_one_line() -> None:
+    made = {**METHODS, **MADE, "status": "incomplete", "message": "the model holds ..."}
+    assert told(made) == "incomplete: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m"
+    assert told({"status": "no_features", "message": "2 of 3 images have no keypoints"}) == (
+        "no_features: 2 of 3 images have no keypoints"
+    )
+    assert told({"status": "no_model", "message": None}) == "no_model"
+
+
+def test_plain_lines_count_what_is_there(capsys: pytest.CaptureFixture[str]) -> None:
+    reporter = Reporter()
+    reporter.preparing(1, 2)
+    reporter.planned(3, 1)
+    reporter.working([])
+    reporter.finished({**METHODS, **MADE, "status": "ok"})
+    assert capsys.readouterr().err.splitlines() == [
+        "1 of 3 models are there already",
+        "2 of 3  ORB-ORB-HAM-BF  ok: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m",
+    ]
