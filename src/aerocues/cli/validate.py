@@ -52,14 +52,20 @@ def validate(
     """
     import aerocues
     from aerocues.cli.interruption import interruptible
+    from aerocues.cli.relations_table import (
+        found_relations,
+        print_relations,
+        relation_facts,
+    )
     from aerocues.cli.scoring import table_and_settings
     from aerocues.cli.validation_tables import print_validation
     from aerocues.scoring.cues import score
     from aerocues.scoring.validation import validate as examine
 
     with interruptible():
+        results = aerocues.Results(folder)
         measured, settings = table_and_settings(
-            aerocues.Results(folder),
+            results,
             preset=preset,
             criteria=criteria,
             reconstruction=reconstruction,
@@ -71,10 +77,13 @@ def validate(
         )
         scores = score(measured.table, settings)
         found = examine(scores, speed=speed, quality=quality, shortlist=top, seed=seed)
+        relations = found_relations(results, preset, measured.dataset)
     if as_json:
-        print_json(_facts(scores, found))
-    else:
-        print_validation(scores, found, measured, top)
+        print_json({**_facts(scores, found), "reconstruction": relation_facts(relations)})
+        return
+    print_validation(scores, found, measured, top)
+    if not isinstance(relations, str):
+        print_relations(relations)
 
 
 def _facts(scores: Scores, found: Validation) -> dict[str, Any]:

@@ -1,0 +1,33 @@
+"""`aerocues validate` where there are 3D models."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import polars as pl
+
+from aerocues.evaluation.planned_rows import METHODS
+from aerocues.evaluation.store import Store
+from aerocues.results import Results
+from tests.cli.conftest import Call
+
+
+def test_relations_to_models_are_told(finished: Path, tmp_path: Path, call: Call) -> None:
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    assert "3D models" not in call("validate", folder).out
+    measured = Results(folder).table().select("dataset", *METHODS).unique().sort(METHODS)
+    models = measured.with_columns(
+        pl.lit("ok").alias("status"),
+        pl.int_range(len(measured)).mul(100).add(40).alias("points_3d"),
+        pl.lit("one").alias("settings_key"),
+    )
+    Store.open(folder).add_reconstructions(models)
+    answer = call("validate", folder)
+    assert answer.code == 0
+    assert "3D models: Spearman's correlation of figures of pairs with them, over" in answer.out
+    assert "points" in answer.out.split("3D models")[1]
+    facts = json.loads(call("validate", folder, "--json").out)["reconstruction"]
+    assert {"feature", "outcome", "pearson", "spearman"} <= set(facts[0])
