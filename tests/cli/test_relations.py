@@ -22,6 +22,8 @@ def test_relations_to_models_are_told(finished: Path, tmp_path: Path, call: Call
     models = measured.with_columns(
         pl.lit("ok").alias("status"),
         pl.int_range(len(measured)).mul(100).add(40).alias("points_3d"),
+        pl.int_range(len(measured)).truediv(9).add(0.3).alias("reprojection_error"),
+        pl.int_range(len(measured)).add(3.0).alias("reconstruction_seconds"),
         pl.lit("one").alias("settings_key"),
     )
     Store.open(folder).add_reconstructions(models)
@@ -31,3 +33,22 @@ def test_relations_to_models_are_told(finished: Path, tmp_path: Path, call: Call
     assert "points" in answer.out.split("3D models")[1]
     facts = json.loads(call("validate", folder, "--json").out)["reconstruction"]
     assert {"feature", "outcome", "pearson", "spearman"} <= set(facts[0])
+
+
+def test_models_that_all_failed_are_left_out_of_the_score(
+    finished: Path, tmp_path: Path, call: Call
+) -> None:
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    measured = Results(folder).table().select("dataset", *METHODS).unique()
+    failed = measured.with_columns(
+        pl.lit("misplaced").alias("status"),
+        pl.lit(500).alias("points_3d"),
+        pl.lit("one").alias("settings_key"),
+    )
+    before = call("score", folder).out
+    Store.open(folder).add_reconstructions(failed)
+    assert call("score", folder).out == before
+    asked = call("score", folder, "--reconstruction")
+    assert asked.code == 2
+    assert "there is no value at all for reprojection_error, points_3d" in asked.err

@@ -11,6 +11,7 @@ from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.combinations import (
     COMBINATION,
     METHODS,
+    SUCCESS,
     decision_table,
     has_chance_test,
     suitable_preset,
@@ -121,9 +122,7 @@ def table_of(
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     names = chosen.criteria if criteria is None else tuple(criteria)
     if reconstruction is None:
-        measured = rows.select(METHODS).unique()
-        share = measured.join(models, on=METHODS, how="semi").height / measured.height
-        reconstruction = criteria is None and share >= ENOUGH_RECONSTRUCTED
+        reconstruction = criteria is None and _enough_models(rows, models)
     if reconstruction:
         names = (*names, *(name for name in chosen.reconstruction_criteria if name not in names))
     listed = criteria_named(names)
@@ -131,6 +130,16 @@ def table_of(
         _refuse_chance(listed)
     table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
     return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows))
+
+
+def _enough_models(rows: pl.DataFrame, models: pl.DataFrame) -> bool:
+    """Whether most combinations were reconstructed, one of them at least with success.
+
+    Where all models failed, they tell combinations apart no more than if there were none.
+    """
+    measured = rows.select(METHODS).unique()
+    share = measured.join(models, on=METHODS, how="semi").height / measured.height
+    return share >= ENOUGH_RECONSTRUCTED and bool(models["status"].is_in(SUCCESS).any())
 
 
 def _median_seconds(rows: pl.DataFrame) -> dict[str, float]:
