@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aerocues.cli.reconstruction_progress import Reporter, told
+from aerocues.methods.combination import Combination
 
 METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
 MADE = {
@@ -28,10 +29,12 @@ def test_a_model_in_one_line() -> None:
 def test_plain_lines_count_what_is_there(capsys: pytest.CaptureFixture[str]) -> None:
     reporter = Reporter()
     reporter.preparing(1, 2)
+    reporter.left_out([Combination.parse("ORB-LUCID-HAM-BF")], "images are gray")
     reporter.planned(3, 1)
     reporter.working([])
     reporter.finished({**METHODS, **MADE, "status": "ok"})
     assert capsys.readouterr().err.splitlines() == [
+        "left out: 1 combination, because images are gray",
         "1 of 3 models are there already",
         "2 of 3  ORB-ORB-HAM-BF  ok: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m",
     ]

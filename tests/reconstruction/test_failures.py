@@ -13,6 +13,7 @@ import pytest
 import aerocues
 from aerocues.datasets.dataset import Dataset, Image
 from aerocues.datasets.decoding import FileSource
+from aerocues.errors import ReconstructionError
 from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.options import ReconstructionOptions
 from tests.methods.distribution import write_distribution
@@ -136,3 +137,22 @@ def test_a_stage_that_takes_too_long_is_ended(
     assert "used more than 0.3 CPU seconds (--time-limit)" in row["message"]
     again = replace(quick, retry_failed=True)
     assert only_row(landscape, empty, again, "SIFT-SIFT-L2-FLANN")["status"] == "ok"
+
+
+def test_gray_images_leave_out_what_needs_colour(
+    tmp_path: Path, quick: ReconstructionOptions
+) -> None:
+    folder = tmp_path / "images"
+    folder.mkdir()
+    images = []
+    for number in range(2):
+        path = folder / f"{number}.png"
+        cv2.imwrite(str(path), noise(number)[:, :, 0])
+        images.append(Image(path.name, FileSource(path)))
+    options = replace(quick, protocol=replace(quick.protocol, focal_length=300.0))
+    with pytest.raises(ReconstructionError, match="LUCID needs three colour channels"):
+        only_row(scene_of(images), tmp_path / "models", options, "ORB-LUCID-HAM-BF")
+    row = only_row(
+        scene_of(images), tmp_path / "models", options, "ORB-LUCID-HAM-BF,ORB-ORB-HAM-BF"
+    )
+    assert row["descriptor"] == "ORB"

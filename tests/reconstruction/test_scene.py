@@ -124,6 +124,14 @@ def test_figures_of_other_settings_are_replaced(tmp_path: Path) -> None:
     assert sorted(found) == [("other", "KAZE", "7"), ("photos", "ORB", "2")]
 
 
+def test_clouds_go_with_their_rows(tmp_path: Path) -> None:
+    store = Store.create(tmp_path / "results")
+    for key in ("old", "kept"):
+        store.write_cloud(key, cloud(square()))
+    store.add_reconstructions(pl.DataFrame([{**row("ORB", "1"), "row_key": "kept"}]))
+    assert [file.stem for file in store.cloud_files()] == ["kept"]
+
+
 def test_clouds_lie_beside_the_figures(tmp_path: Path) -> None:
     store = Store.create(tmp_path / "results")
     assert store.cloud("key") is None

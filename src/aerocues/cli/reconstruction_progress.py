@@ -9,8 +9,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from aerocues.cli.console import count
 from aerocues.cli.progress import spoken_seconds
 from aerocues.evaluation.metrics import Row
+from aerocues.methods.combination import Combination
 from aerocues.reconstruction.engine import Doing
 from aerocues.reconstruction.options import ReconstructionObserver
 
@@ -34,6 +36,9 @@ class Reporter(ReconstructionObserver):
     def preparing(self, done: int, total: int) -> None:
         if self.status:
             self.status.update(f"reading images: {done:,} of {total:,}")
+
+    def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
+        self._say(f"left out: {count(len(combinations), 'combination')}, because {reason}")
 
     def planned(self, total: int, present: int) -> None:
         self.total, self.done = total, present

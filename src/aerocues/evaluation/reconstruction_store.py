@@ -37,6 +37,8 @@ class ReconstructionStore(FolderFiles):
     def add_reconstructions(self, figures: pl.DataFrame) -> None:
         """Add figures of one dataset; those of other settings go, as they are not comparable.
 
+        Clouds without a row go, too.
+
         Parameters
         ----------
         figures : pl.DataFrame
@@ -50,7 +52,11 @@ class ReconstructionStore(FolderFiles):
         )
         kept = self.reconstructions().filter(~same)
         kept = kept.join(new, on=RECONSTRUCTION_IDENTITY, how="anti")
-        self.write_reconstructions(pl.concat([kept, new]))
+        table = pl.concat([kept, new])
+        self.write_reconstructions(table)
+        for file in self.cloud_files():
+            if file.stem not in set(table["row_key"]):
+                file.unlink()
 
     def reconstructions(self) -> pl.DataFrame:
         """The figures of 3D reconstructions, by dataset and combination; often none."""

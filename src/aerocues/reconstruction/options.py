@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from aerocues.errors import ReconstructionError
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.run import usable_cores
+from aerocues.methods.combination import Combination
 from aerocues.reconstruction.engine import Doing, ReconstructionLimits
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.scene import Wanted
@@ -20,6 +21,9 @@ class ReconstructionObserver:
 
     def preparing(self, done: int, total: int) -> None:
         """`done` of `total` images are in the folder of models."""
+
+    def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
+        """The images rule out some of the combinations."""
 
     def planned(self, total: int, present: int) -> None:
         """`total` combinations are to be there, `present` of which are."""

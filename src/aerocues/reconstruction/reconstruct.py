@@ -61,7 +61,7 @@ def reconstruct_scene(
     """
     _check_scene(dataset)
     scene = _scene(dataset, output, options)
-    chosen = _chosen(scene, combinations)
+    chosen = _chosen(scene, combinations, observer)
     reference = Combination.parse(options.reference) if options.reference else None
     if reference is not None and reference not in chosen:
         raise ReconstructionError(
@@ -113,7 +113,11 @@ def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Sc
     )
 
 
-def _chosen(scene: Scene, combinations: str | Iterable[str | Combination]) -> list[Combination]:
+def _chosen(
+    scene: Scene,
+    combinations: str | Iterable[str | Combination],
+    observer: ReconstructionObserver,
+) -> list[Combination]:
     """The combinations in the order asked for, where each was named; else in that of the tables."""
     patterns = combinations if isinstance(combinations, str) else [str(c) for c in combinations]
     chosen = select(scene.methods, patterns)
@@ -126,10 +130,10 @@ def _chosen(scene: Scene, combinations: str | Iterable[str | Combination]) -> li
     ]
     if gray and needs_colour:
         chosen = [each for each in chosen if each not in needs_colour]
+        reason = f"{needs_colour[0].descriptor} needs three colour channels, and images are gray"
         if not chosen:
-            raise ReconstructionError(
-                f"{needs_colour[0]} needs colour and images are gray; choose other combinations"
-            )
+            raise ReconstructionError(f"{reason}; choose other combinations")
+        observer.left_out(needs_colour, reason)
     return chosen
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
@@ -111,8 +111,10 @@ class Scene:
         )
 
     def row_key(self, combination: Combination) -> str:
-        """Names a model."""
-        return content_hash([self.settings_key(), self.matching_key(combination)])
+        """Names a model and the files that are made of it."""
+        return content_hash(
+            [self.settings_key(), self.matching_key(combination), asdict(self.wanted)]
+        )
 
     def _pairs(self) -> list[tuple[str, str]]:
         return [(pair.image_1, pair.image_2) for pair in self.dataset.pairs]
