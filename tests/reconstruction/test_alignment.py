@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from aerocues.reconstruction.alignment import (
     Similarity,
     extent,
+    robust_similarity,
     root_mean_square,
     rotation_angles,
     similarity,
@@ -44,6 +45,23 @@ def test_noisy_points_give_what_colmap_gives() -> None:
     np.testing.assert_allclose(found.translation, theirs.translation, atol=1e-9)
 
 
+@pytest.mark.parametrize("count", [9, 60])
+def test_cameras_that_are_far_off_do_not_bend_the_frame(count: int) -> None:
+    generator = np.random.default_rng(4)
+    source = generator.normal(size=(count, 3))
+    target = 30 * source @ Rotation.random(random_state=5).as_matrix().T + [7, 8, 9]
+    target += generator.normal(scale=0.2, size=target.shape)
+    target[: count // 3] += [40, 0, 0]
+    found = robust_similarity(source, target, tolerance=2.0)
+    assert found is not None
+    errors = np.linalg.norm(found.apply(source) - target, axis=1)
+    assert errors[: count // 3].min() > 30
+    assert errors[count // 3 :].max() < 1
+    again = robust_similarity(source, target, tolerance=2.0)
+    assert again is not None
+    np.testing.assert_array_equal(found.rotation, again.rotation)
+
+
 def test_a_mirrored_scene_is_not_mirrored_back() -> None:
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
     found = similarity(points, points * [1, 1, -1])
@@ -63,6 +81,7 @@ def test_a_mirrored_scene_is_not_mirrored_back() -> None:
 )
 def test_what_does_not_determine_it_gives_none(points: np.ndarray) -> None:
     assert similarity(points, points) is None
+    assert robust_similarity(points, points, tolerance=1.0) is None
 
 
 def test_extent_and_root_mean_square_by_hand() -> None:

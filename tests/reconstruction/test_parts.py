@@ -10,7 +10,12 @@ import pytest
 from aerocues.methods.arrays import Keypoints
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.strongest import limited, strongest
-from aerocues.reconstruction.diagnosis import judged, without_features, without_links
+from aerocues.reconstruction.diagnosis import (
+    Placement,
+    judged,
+    without_features,
+    without_links,
+)
 from aerocues.reconstruction.match_graph import parts_of, told_parts
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
 from aerocues.reconstruction.protocol import Requirements
@@ -114,36 +119,36 @@ def test_failures_before_the_mapper_are_told_in_words() -> None:
 
 def test_an_incomplete_model_tells_the_parts_or_what_is_left_out() -> None:
     torn = {pair: count for pair, count in WHOLE.items() if pair != ("c", "d")}
-    outcome = judged({}, IMAGES, ["a", "b", "c"], torn, Requirements())
+    outcome = judged(IMAGES, ["a", "b", "c"], torn, None, Requirements())
     assert outcome.status == "incomplete"
     assert outcome.message == (
         "the model holds 3 of 6 images; the graph of verified pairs falls into 2 parts: "
         "3 images (a, b, c), 3 images (d, e, f)"
     )
-    outcome = judged({}, IMAGES, ["a", "b", "c", "d"], WHOLE, Requirements())
+    outcome = judged(IMAGES, ["a", "b", "c", "d"], WHOLE, None, Requirements())
     assert outcome.status == "incomplete"
     assert outcome.message == (
         "the model holds 4 of 6 images, though the graph of verified pairs is whole; left out: "
         "e (2 pairs, at most 30 inliers), f (1 pairs, at most 20 inliers)"
     )
-    assert judged({}, IMAGES, IMAGES[:5], WHOLE, Requirements()).status == "ok"
-    assert judged({}, IMAGES, IMAGES, WHOLE, Requirements()).message is None
+    assert judged(IMAGES, IMAGES[:5], WHOLE, None, Requirements()).status == "ok"
+    assert judged(IMAGES, IMAGES, WHOLE, None, Requirements()).message is None
 
 
-@pytest.mark.parametrize(
-    ("share", "metres", "truth", "status"),
-    [
-        (0.18, 37.7, "gps", "misplaced"),
-        (0.08, 2.0, "gps", "ok"),  # within what a receiver of GPS errs
-        (0.08, 2.0, "poses", "misplaced"),
-        (0.01, 37.7, "gps", "ok"),
-    ],
-)
-def test_a_model_far_from_its_positions_is_no_success(
-    share: float, metres: float, truth: str, status: str
-) -> None:
-    row = {"position_error_share": share, "position_rmse": metres, "truth": truth}
-    outcome = judged(row, IMAGES, IMAGES, WHOLE, Requirements())
-    assert outcome.status == status
-    if status == "misplaced":
-        assert "bent or wrongly joined" in (outcome.message or "")
+def test_a_model_with_cameras_far_from_their_place() -> None:
+    near = dict.fromkeys(IMAGES, 0.7)
+    placement = Placement({**near, "b": 23.14}, 5.0, "gps")
+    outcome = judged(IMAGES, IMAGES, WHOLE, placement, Requirements())
+    assert outcome.status == "ok"
+    assert outcome.message == (
+        "1 of 6 cameras is more than 5.0 m from its true position (gps): b (23.1 m)"
+    )
+    placement = Placement({**near, "b": 23.14, "d": 30.0}, 5.0, "gps")
+    outcome = judged(IMAGES, IMAGES, WHOLE, placement, Requirements())
+    assert outcome.status == "misplaced"
+    assert outcome.message == (
+        "2 of 6 cameras are more than 5.0 m from their true positions (gps): d (30.0 m), "
+        "b (23.1 m); the model is bent or wrongly joined"
+    )
+    placement = Placement(near, 5.0, "gps")
+    assert judged(IMAGES, IMAGES, WHOLE, placement, Requirements()).message is None

@@ -8,13 +8,13 @@ from aerocues.evaluation.statuses import Status
 RECONSTRUCTION_IDENTITY = ("dataset", "detector", "descriptor", "norm", "matcher")
 
 RECONSTRUCTION_STATUSES: tuple[Status, ...] = (
-    Status("ok", "one model holds the images, and its cameras are where they should be"),
+    Status("ok", "one model holds the images, and its cameras are where they were"),
     Status("no_features", "no image, or one only, has keypoints with a descriptor"),
     Status("no_verified_pair", "no pair of images has a geometry that beats chance"),
     Status("no_initial_pair", "no pair suits to begin a model with: too few inliers, or too flat"),
     Status("no_model", "models were begun, and none held"),
     Status("incomplete", "the largest model holds too few of the images"),
-    Status("misplaced", "the cameras of the model are far from where they were"),
+    Status("misplaced", "too few cameras of the model are where they were"),
     Status("error", "a method or the mapper raised an error; the message has it", retried=True),
     Status("crashed", "the process died; the message says in which stage", retried=True),
     Status("timeout", "a stage used up its time limit", retried=True),
@@ -69,7 +69,9 @@ _TIMES = (
 )
 _TRUTH = (
     _number("position_rmse", "m", "root mean square distance of camera centres from the truth"),
+    _number("position_median", "m", "median of that distance"),
     _number("position_error_share", "ratio", "position_rmse / extent of the true positions"),
+    _count("placed_images", "registered images whose cameras are in their place"),
     _text("truth", "what positions are compared with: gps or poses"),
     _number("rotation_error", "degree", "median rotation from the true orientation (poses)"),
     _number("surface_error", "m", "median distance of 3D points from the true surface (depth)"),

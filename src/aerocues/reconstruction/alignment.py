@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import combinations
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 FEWEST = 3
+MOST_TRIPLES = 1000
 # Of the second to the first singular value: below, points lie on a line.
 ON_A_LINE = 1e-3
 
@@ -54,6 +58,47 @@ def similarity(source: Array, target: Array) -> Similarity | None:
     rotation = (left * signs) @ right
     scale = float((values * signs).sum() / (from_mean**2).sum())
     return Similarity(scale, rotation, mean_target - scale * rotation @ mean_source)
+
+
+def robust_similarity(
+    source: Array, target: Array, tolerance: float, seed: int = 0
+) -> Similarity | None:
+    """The similarity that brings most points to within a tolerance of others (RANSAC).
+
+    Parameters
+    ----------
+    source, target : (N, 3) float64
+    tolerance : float
+        In the unit of `target`.
+    seed : int
+        Of the triples that are tried; all are where there are no more than `MOST_TRIPLES`.
+
+    Returns
+    -------
+    Similarity or None
+        By least squares over the points within the tolerance; None where none is determined.
+    """
+    best: Similarity | None = None
+    best_found = (0, -np.inf)
+    for triple in _triples(len(source), seed):
+        found = similarity(source[triple], target[triple])
+        if found is None:
+            continue
+        errors = np.linalg.norm(found.apply(source) - target, axis=1)
+        quality = (int((errors <= tolerance).sum()), -float(np.median(errors)))
+        if quality > best_found:
+            best, best_found = found, quality
+    if best is None:
+        return similarity(source, target)
+    near = np.linalg.norm(best.apply(source) - target, axis=1) <= tolerance
+    return similarity(source[near], target[near]) or best
+
+
+def _triples(count: int, seed: int) -> Iterable[list[int]]:
+    if comb(count, FEWEST) <= MOST_TRIPLES:
+        return (list(triple) for triple in combinations(range(count), FEWEST))
+    generator = np.random.default_rng(seed)
+    return (generator.choice(count, FEWEST, replace=False).tolist() for _ in range(MOST_TRIPLES))
 
 
 def _on_a_line(centred: Array) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.colmap import open_database
 from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
 from aerocues.reconstruction.matched_scene import Names
@@ -101,43 +100,68 @@ def _xy(keypoints: Any) -> Any:
     return np.asarray(keypoints, np.float64)[:, :2]
 
 
+@dataclass(frozen=True)
+class Placement:
+    """Metres between the cameras of a model and where they were, and what is allowed."""
+
+    errors: Mapping[str, float]
+    tolerance: float
+    source: str
+
+    @property
+    def far(self) -> list[str]:
+        """Images whose cameras are not in their place, the farthest first."""
+        names = [name for name, error in self.errors.items() if error > self.tolerance]
+        return sorted(names, key=lambda name: (-self.errors[name], name))
+
+    def told(self) -> str:
+        """``1 of 18 cameras is more than 5.0 m from its true position (GPS): a (23.1 m)``."""
+        far = self.far
+        listed = ", ".join(f"{name} ({self.errors[name]:.1f} m)" for name in far[:LISTED])
+        more = ", ..." if len(far) > LISTED else ""
+        are, their = ("is", "its") if len(far) == 1 else ("are", "their")
+        return (
+            f"{len(far)} of {len(self.errors)} cameras {are} more than {self.tolerance:.1f} m from "
+            f"{their} true position{'s' * (len(far) > 1)} ({self.source}): {listed}{more}"
+        )
+
+
 def judged(
-    row: Row,
-    images: list[str],
-    in_model: list[str],
+    images: Sequence[str],
+    in_model: Sequence[str],
     inliers: Mapping[Names, int],
+    placement: Placement | None,
     requirements: Requirements,
 ) -> Outcome:
     """Whether a model is whole and in its place.
 
     Parameters
     ----------
-    row : Row
-        Its figures.
-    images, in_model : list of str
+    images, in_model : sequence of str
         All images of the scene, and those of the model.
     inliers : mapping of pairs to int
         Of the verified pairs.
+    placement : Placement, optional
+        Where positions are known.
     requirements : Requirements
     """
-    if len(in_model) < requirements.registered_share * len(images):
+    least = requirements.registered_share * len(images)
+    if len(in_model) < least:
         return Outcome("incomplete", _incomplete(images, in_model, inliers))
-    share, metres = row.get("position_error_share"), row.get("position_rmse")
-    if share is not None and metres is not None and share > requirements.position_error_share:
-        floor = requirements.position_error_metres if row["truth"] == "gps" else 0.0
-        if metres > floor:
-            return Outcome(
-                "misplaced",
-                f"the cameras are {metres:.1f} m (root mean square) from their true positions, "
-                f"{100 * share:.0f} % of the extent of the scene: the model is bent or wrongly "
-                "joined",
-            )
+    told = []
+    if placement is not None and placement.far:
+        if len(in_model) - len(placement.far) < least:
+            what = "the model is bent or wrongly joined"
+            return Outcome("misplaced", f"{placement.told()}; {what}")
+        told.append(placement.told())
     if len(in_model) < len(images):
-        return Outcome("ok", _incomplete(images, in_model, inliers))
-    return Outcome("ok")
+        told.append(_incomplete(images, in_model, inliers))
+    return Outcome("ok", "; ".join(told) or None)
 
 
-def _incomplete(images: list[str], in_model: list[str], inliers: Mapping[Names, int]) -> str:
+def _incomplete(
+    images: Sequence[str], in_model: Sequence[str], inliers: Mapping[Names, int]
+) -> str:
     held = f"the model holds {len(in_model)} of {len(images)} images"
     parts = parts_of(images, inliers)
     if len(parts) > 1:

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from aerocues.datasets.dataset import Image
 from aerocues.evaluation.features import StageError
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.whole_files import write_whole
@@ -15,6 +14,7 @@ from aerocues.reconstruction.colmap import registered
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import (
     Outcome,
+    Placement,
     judged,
     without_features,
     without_links,
@@ -27,7 +27,12 @@ from aerocues.reconstruction.matching import Announce, SceneMatcher, call_of
 from aerocues.reconstruction.picture import picture_of
 from aerocues.reconstruction.quality import cloud_of, model_figures
 from aerocues.reconstruction.scene import Scene
-from aerocues.reconstruction.truth import compare_with_truth, to_true_frame, true_positions
+from aerocues.reconstruction.truth import (
+    compare_with_truth,
+    position_errors,
+    to_true_frame,
+    true_positions,
+)
 from aerocues.reconstruction.verification import linked_pairs, verify
 
 Result = TypeVar("Result")
@@ -134,17 +139,21 @@ class ModelMaker:
         self._announce(call_of("judging", self._combination, "its model"))
         if scene.wanted.colours:
             model.extract_colors_for_all_images(str(scene.images))
+        requirements = scene.protocol.requirements
         truth = true_positions(scene.dataset)
-        frame = to_true_frame(model, truth)
+        frame = to_true_frame(model, truth, requirements)
         self._row.update(model_figures(model))
-        self._row.update(compare_with_truth(model, scene.dataset, truth, frame))
-        images: list[Image] = list(scene.dataset.images)
+        self._row.update(compare_with_truth(model, scene.dataset, truth, frame, requirements))
+        placement = None
+        if truth is not None and frame is not None:
+            errors = position_errors(model, truth, frame)
+            placement = Placement(errors, truth.tolerance(requirements), truth.source)
         outcome = judged(
-            self._row,
-            [image.name for image in images],
+            [image.name for image in scene.dataset.images],
             [str(image.name) for image in registered(model)],
             inliers,
-            scene.protocol.requirements,
+            placement,
+            requirements,
         )
         export_model(model, self._folder)
         if scene.wanted.undistorted:

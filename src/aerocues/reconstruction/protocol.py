@@ -22,15 +22,17 @@ class Requirements:
     Parameters
     ----------
     registered_share : float
-        Least share of the images that the largest model holds.
-    position_error_share, position_error_metres : float
-        A model whose camera centres are off by more than both is misplaced: the share of the
-        extent of the flight tells bent models, the metres allow for the receiver of GPS.
+        Least share of the images that the largest model holds; and of those that are in their
+        place, where that is known.
+    position_error_share : float
+        How far a camera in its place may be off, as a share of the extent of the flight.
+    gps_error : float
+        Metres that it may be off at least where positions are from GPS, which errs itself.
     """
 
     registered_share: float = 0.8
     position_error_share: float = 0.03
-    position_error_metres: float = 5.0
+    gps_error: float = 5.0
 
 
 @dataclass(frozen=True)

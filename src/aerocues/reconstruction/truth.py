@@ -14,21 +14,40 @@ from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.alignment import (
     Similarity,
     extent,
+    robust_similarity,
     root_mean_square,
     rotation_angles,
-    similarity,
 )
 from aerocues.reconstruction.colmap import camera_from_world, registered
+from aerocues.reconstruction.protocol import Requirements
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class TruePositions:
-    """Centres of cameras in metres by name of the image; from ``poses`` or ``gps``."""
+    """Where cameras were.
+
+    Parameters
+    ----------
+    source : str
+        ``poses`` or ``gps``.
+    by_name : dict of str to (3,) float64
+        Centres in metres.
+    """
 
     source: str
     by_name: dict[str, Array]
+
+    @property
+    def extent(self) -> float:
+        """Diagonal of the box around all of them, in metres."""
+        return extent(np.array(list(self.by_name.values())))
+
+    def tolerance(self, requirements: Requirements) -> float:
+        """Metres within which a camera counts as in its place."""
+        share = requirements.position_error_share * self.extent
+        return max(share, requirements.gps_error) if self.source == "gps" else share
 
 
 def true_positions(dataset: Dataset) -> TruePositions | None:
@@ -54,20 +73,39 @@ def centres_of(model: Any) -> dict[str, Array]:
     }
 
 
-def to_true_frame(model: Any, truth: TruePositions | None) -> Similarity | None:
-    """From the model's frame to metres; None where nothing is known or it is not determined."""
+def to_true_frame(
+    model: Any, truth: TruePositions | None, requirements: Requirements
+) -> Similarity | None:
+    """From the model's frame to metres; None where nothing is known or it is not determined.
+
+    The frame in which most cameras are in their place: one that is far off bends nothing.
+    """
     if truth is None:
         return None
     centres = centres_of(model)
     shared = [name for name in centres if name in truth.by_name]
-    return similarity(
+    return robust_similarity(
         np.array([centres[name] for name in shared]).reshape(-1, 3),
         np.array([truth.by_name[name] for name in shared]).reshape(-1, 3),
+        truth.tolerance(requirements),
     )
 
 
+def position_errors(model: Any, truth: TruePositions, frame: Similarity) -> dict[str, float]:
+    """Metres between each registered camera and where it was, by name of the image."""
+    return {
+        name: float(np.linalg.norm(frame.apply(centre) - truth.by_name[name]))
+        for name, centre in centres_of(model).items()
+        if name in truth.by_name
+    }
+
+
 def compare_with_truth(
-    model: Any, dataset: Dataset, truth: TruePositions | None, frame: Similarity | None
+    model: Any,
+    dataset: Dataset,
+    truth: TruePositions | None,
+    frame: Similarity | None,
+    requirements: Requirements,
 ) -> Row:
     """Errors of positions, rotations and surface, as far as the truth is known.
 
@@ -75,17 +113,15 @@ def compare_with_truth(
     """
     if truth is None or frame is None:
         return {}
-    centres = centres_of(model)
-    errors = np.array(
-        [
-            np.linalg.norm(frame.apply(centre) - truth.by_name[name])
-            for name, centre in centres.items()
-            if name in truth.by_name
-        ]
-    )
+    errors = np.array(list(position_errors(model, truth, frame).values()))
     rmse = root_mean_square(errors)
-    size = extent(np.array(list(truth.by_name.values())))
-    found: Row = {"truth": truth.source, "position_rmse": rmse, "position_error_share": rmse / size}
+    found: Row = {
+        "truth": truth.source,
+        "position_rmse": rmse,
+        "position_median": float(np.median(errors)),
+        "position_error_share": rmse / truth.extent,
+        "placed_images": int((errors <= truth.tolerance(requirements)).sum()),
+    }
     if truth.source == "poses":
         views = {image.name: image.truth for image in dataset.images if image.truth}
         found["rotation_error"] = _rotation_error(model, views, frame)
