@@ -121,6 +121,11 @@ def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     aerocues.reconstruct(landscape, empty, SIFT, options=quick, observer=second)
     assert (second.present, second.rows) == (1, [])
 
+    # Another one in the same folder: both are in its table, with the same reference.
+    both = aerocues.reconstruct(landscape, empty, "AKAZE-AKAZE-HAM-FLANN", options=quick)
+    assert both.table()["detector"].to_list() == ["AKAZE", "SIFT"]
+    assert both.table()["reference"].to_list() == [SIFT, SIFT]
+
     # Other settings of the mapper: a new model out of the same matches.
     protocol = replace(quick.protocol, mapper="global")
     third = Counting()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -63,13 +63,14 @@ def reconstruct_scene(
     scene = _scene(dataset, output, options)
     chosen = _chosen(scene, combinations, observer)
     reference = Combination.parse(options.reference) if options.reference else None
-    if reference is not None and reference not in chosen:
-        raise ReconstructionError(
-            f"the reference {reference} is not among the combinations; add it to them"
-        )
     Models.create(output)
     with folder_lock(output):
         scene = _with_cameras(scene, options.limits(), observer)
+        others = _others(scene, chosen)
+        if reference is not None and reference not in (*chosen, *others):
+            raise ReconstructionError(
+                f"the reference {reference} is not among the combinations; add it to them"
+            )
         _write_settings(scene, options)
         finished = _finished(scene, chosen, retry_failed=options.retry_failed)
         observer.planned(len(chosen), len(finished))
@@ -79,7 +80,7 @@ def reconstruct_scene(
                 finished[combination] = row
         finally:  # an interruption loses nothing that is finished
             if finished:
-                _write_rows(scene, finished, reference, store)
+                _write_rows(scene, {**others, **finished}, reference, store)
         remove_features(output)
     return Models(output)
 
@@ -184,6 +185,19 @@ def _finished(
             continue
         finished[combination] = row
     return finished
+
+
+def _others(scene: Scene, chosen: Sequence[Combination]) -> dict[Combination, Row]:
+    """Rows of the other models in the folder that were made under the same conditions."""
+    others = {}
+    for place in sorted(scene.folder.glob("*-*-*-*/")):
+        row = read_outcome(place)
+        if row is None or row.get("settings_key") != scene.settings_key():
+            continue
+        combination = Combination.parse(place.name)
+        if combination not in chosen:
+            others[combination] = row
+    return others
 
 
 def _reconstruct(
