@@ -41,9 +41,10 @@ def print_models(models: Models) -> None:
     console = standard_output()
     located = table["position_rmse"].is_not_null().any()
     headings = ["images", "points", "track\nlength", "error\npx"]
-    headings += ["position\nm"] if located else []
-    headings += ["features\ns", "match\ns", "verify\ns", "map\ns"]
+    headings += ["in\nplace", "off\nm"] if located else []
+    headings += ["features\ns", "matches\ns", "model\ns"]
     output = plain_table("combination", "status", *headings, numbers=len(headings), gap=1)
+    output.columns[0].no_wrap = True
     for row in table.iter_rows(named=True):
         output.add_row(
             "-".join(row[name] for name in METHODS), row["status"], *_figures(row, located)
@@ -67,9 +68,10 @@ def _figures(row: Mapping[str, Any], located: bool) -> list[str]:
         _number(row["reprojection_error"], ".2f"),
     ]
     if located:
-        cells.append(_number(row["position_rmse"], ".1f"))
-    times = ("feature_seconds", "matching_seconds", "verification_seconds", "mapping_seconds")
-    return [*cells, *(_number(row[name], ",.1f") for name in times)]
+        cells += [_number(row["placed_images"], "d"), _number(row["position_rmse"], ".1f")]
+    cells += [_number(row[name], ",.1f") for name in ("feature_seconds", "matching_seconds")]
+    modelling = [row[name] for name in ("verification_seconds", "mapping_seconds")]
+    return [*cells, _number(None if None in modelling else sum(modelling), ",.1f")]
 
 
 def _number(value: float | None, form: str) -> str:
@@ -77,17 +79,17 @@ def _number(value: float | None, form: str) -> str:
 
 
 def _notes(table: pl.DataFrame) -> list[str]:
-    """Why models failed, and to what distances are."""
+    """Why models failed or are not whole, and to what distances are."""
     import polars as pl
 
     lines = []
     if table["status"].is_in(["ok"]).sum() == 0:
         lines.append("no combination reconstructs the scene as it was flown")
-    failed = table.filter(pl.col("status") != "ok")
-    for row in failed.iter_rows(named=True):
+    told = table.filter((pl.col("status") != "ok") | pl.col("message").is_not_null())
+    for row in told.iter_rows(named=True):
         name = "-".join(row[part] for part in METHODS)
-        told = f"{name}: {row['message'] or row['status']}"
-        lines += textwrap.wrap(told, 98, initial_indent="", subsequent_indent=INDENT)
+        line = f"{name}: {row['message'] or row['status']}"
+        lines += textwrap.wrap(line, 98, subsequent_indent=INDENT)
     references = table["reference"].drop_nulls().unique().to_list()
     if references:
         lines.append(f"distances between clouds, in the table, are to {references[0]}")
