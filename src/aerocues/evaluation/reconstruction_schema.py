@@ -94,7 +94,7 @@ _CLOUD_DISTANCES = (
             ("p95", "95th percentile of the"),
         )
     ),
-    _text("length_unit", "m where positions are known; else the unit of the reference's model"),
+    _text("length_unit", "of these distances: m, or the unit of the reference's model"),
 )
 _PROVENANCE = (
     _text("preset", "preset of parameters of the methods"),

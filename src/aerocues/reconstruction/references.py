@@ -39,7 +39,7 @@ def with_distances(
     for combination, row in rows.items():
         cloud = clouds.get(combination)
         if cloud is not None:
-            figures: Row = {"length_unit": cloud.unit}
+            figures: Row = {}
             found = _distances(combination, chosen, clouds)
             if chosen is not None and found is not None:
                 unit = clouds[chosen].unit

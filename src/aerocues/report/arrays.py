@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 DIGITS = 5
+LARGEST_STEP = 65534
 
 
 def packed_floats(values: ArrayLike) -> dict[str, str]:
@@ -22,6 +23,19 @@ def packed_floats(values: ArrayLike) -> dict[str, str]:
 def packed_bytes(values: ArrayLike) -> dict[str, str]:
     """Unsigned bytes in row-major order, as base64."""
     return {"u8": _base64(np.asarray(values, dtype=np.uint8))}
+
+
+def packed_scaled(values: ArrayLike, low: float, high: float) -> dict[str, str | float]:
+    """Numbers between two bounds in 16 bits each, as base64; 65535 stands for no value.
+
+    What lies beyond a bound is put on it.
+    """
+    numbers = np.asarray(values, dtype=np.float64)
+    # Rounded first, as `plain` will round them.
+    start, end = (float(f"{bound:.{DIGITS}g}") for bound in (low, high))
+    steps = (np.clip(numbers, start, end) - start) / ((end - start) or 1.0) * LARGEST_STEP
+    codes = np.where(np.isfinite(numbers), np.nan_to_num(steps).round(), LARGEST_STEP + 1)
+    return {"u16": _base64(codes.astype("<u2")), "low": start, "high": end}
 
 
 def _base64(values: np.ndarray[Any, Any]) -> str:

@@ -14,6 +14,7 @@ from aerocues.evaluation.statuses import STATUSES
 from aerocues.report.arrays import packed_bytes
 from aerocues.report.columns import column_facts, matrix_positions
 from aerocues.report.curves import curves_of, step_of
+from aerocues.report.models import model_facts
 from aerocues.report.scores import method_labels, score_facts
 from aerocues.report.validation import validation_facts
 from aerocues.scoring.across import Entry
@@ -24,6 +25,8 @@ from aerocues.scoring.validation import Validation
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from aerocues.evaluation.results import Results
 
 NOT_MEASURED = "not measured"
 STAGES = ("detect", "describe", "match", "verify", "total")
@@ -42,12 +45,18 @@ class ReportEntry:
     validation : Validation
     settings : dict
         As in ``run.json``.
+    results : Results
+        What it was read from.
+    models : pl.DataFrame
+        Its reconstructions; none where there are none.
     """
 
     entry: Entry
     ranking: Ranking
     validation: Validation
     settings: dict[str, Any]
+    results: Results
+    models: pl.DataFrame
 
     @property
     def name(self) -> str:
@@ -64,10 +73,14 @@ class ReportEntry:
         return self.ranking.scores.table.alternatives
 
     @property
+    def chance_fails(self) -> bool:
+        """Whether a pair that does not beat chance has failed."""
+        return preset_named(self.entry.preset).chance_fails
+
+    @property
     def succeeded(self) -> tuple[str, ...]:
         """Statuses of pairs that count as a success."""
-        chance_fails = preset_named(self.entry.preset).chance_fails
-        return SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
+        return SUCCESS if self.chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
 
     def seconds(self) -> dict[str, float]:
         """Median time of each combination for an image and a pair, where it is known."""
@@ -114,6 +127,7 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
         "score": score_facts(found.ranking, found.seconds(), entry.preset),
         "medians": _medians(found),
         "validation": validation_facts(found.ranking.scores, found.validation),
+        "models": model_facts(found.rows, found.models, chance_fails=found.chance_fails),
         **_outcomes(rows),
         "excluded": _excluded(found.settings),
         "run": _run(found.settings, pairs) if known else {},

@@ -8,6 +8,7 @@ from importlib.metadata import version as version_of
 from typing import Any
 
 from aerocues.report.arrays import plain
+from aerocues.report.clouds import Clouds
 from aerocues.report.comparison import comparison_facts, machine_facts
 from aerocues.report.entry import ReportEntry, entry_facts
 from aerocues.report.method import incompatible, method_facts
@@ -20,6 +21,7 @@ def payload_of(
     title: str,
     *,
     pictures: Pictures | None = None,
+    clouds: Clouds | None = None,
 ) -> dict[str, Any]:
     """The payload of the page.
 
@@ -28,10 +30,11 @@ def payload_of(
     entries : sequence of ReportEntry
     title : str
     pictures : Pictures, optional
-        Their notes are said in the section on the method.
+    clouds : Clouds, optional
+        The notes of both are said in the section on the method.
     """
     version = version_of("aerocues")
-    shown = pictures or Pictures()
+    shown, modelled = pictures or Pictures(), clouds or Clouds()
     cautioned = [f"{found.name}: {each}" for found in entries for each in cautions(found.ranking)]
     scored = [found.entry for found in entries]
     measured = (name for found in entries for name in found.combinations)
@@ -45,7 +48,7 @@ def payload_of(
         "incompatible": incompatible(measured),
         "images": shown.images,
         "pictures": shown.pictures,
-        "models": [],
-        "method": method_facts(version, [*cautioned, *shown.notes]),
+        "clouds": modelled.clouds,
+        "method": method_facts(version, [*cautioned, *modelled.notes, *shown.notes]),
     }
     return dict(plain(facts))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 from aerocues.errors import ScoreError, StoreError
 from aerocues.evaluation.export import write_file
@@ -54,12 +53,14 @@ def report_entries(
     ScoreError
         If one of them cannot be scored, or they suit different presets and none was chosen.
     """
+    import polars as pl
+
     if not results:
         raise ScoreError("there are no results to report on; name a results folder")
     told = progress or _silent
     told("reading and scoring")
-    settings = _settings_of_entries(results)
-    if reconstruction is None and len(settings) > 1:
+    sources = _results_of_entries(results)
+    if reconstruction is None and len(sources) > 1:
         reconstruction = False
     entries = entries_of(
         results, preset, criteria=criteria, reconstruction=reconstruction, **changes
@@ -67,12 +68,14 @@ def report_entries(
     if not entries:
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
     found = []
-    for each, entry in zip(settings, entries, strict=True):
+    for source, entry in zip(sources, entries, strict=True):
         told(f"scoring {entry.name}")
         scores = entry.scores
         ranking = rank_alternatives(scores.table, scores.settings, resamples=resamples, seed=seed)
         told(f"validating {entry.name}")
-        found.append(ReportEntry(entry, ranking, validate(scores, seed=seed), each))
+        models = source.reconstructions().filter(pl.col("dataset") == entry.dataset)
+        validation = validate(scores, seed=seed)
+        found.append(ReportEntry(entry, ranking, validation, source.settings, source, models))
     return found
 
 
@@ -80,10 +83,10 @@ def _silent(_: str) -> None:
     pass
 
 
-def _settings_of_entries(results: Sequence[Results]) -> list[dict[str, Any]]:
-    """What ``run.json`` says, for each data set and machine in the order of `entries_of`."""
+def _results_of_entries(results: Sequence[Results]) -> list[Results]:
+    """What each data set and machine was read from, in the order of `entries_of`."""
     return [
-        each.settings
+        each
         for each in results
         for _ in range(each.table().select("dataset", "machine").n_unique())
     ]
@@ -127,7 +130,7 @@ def write_report(
     pictures : int
         How many combinations of each data set to show pictures of; 0 for none.
     max_megabytes : float
-        Pictures are left out until the page is no larger than this.
+        Clouds and pictures are left out until the page is no larger than this.
     progress : callable, optional
         Told in a few words what is being done.
 
@@ -175,10 +178,11 @@ def write_page(
 ) -> Path:
     """Write the page of entries that are scored; see `write_report`."""
     from aerocues.datasets.catalog import open_dataset
+    from aerocues.report.clouds import clouds_of
     from aerocues.report.page import page_of
     from aerocues.report.payload import payload_of
     from aerocues.report.pictures import pictures_of
-    from aerocues.report.size import fitting
+    from aerocues.report.size import fitting, fitting_clouds, size_of
 
     told = progress or _silent
     folder = output.expanduser().parent
@@ -191,14 +195,17 @@ def write_page(
     found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
     told(f"writing {output}")
     heading = title or default_title(entries)
-    without = page_of(payload_of(entries, heading)).encode()
-    room = int(max_megabytes * 1e6) - len(without)
-    kept = fitting(found, room)
-    page = without
-    if kept.pictures or kept.notes:
-        payload = payload_of(entries, heading, pictures=kept)
+    page = page_of(payload_of(entries, heading)).encode()
+    room = int(max_megabytes * 1e6) - len(page)
+    # Where there are pictures, too, clouds take half of the room at most.
+    share = room // 2 if any(each.pictures for each in found) else room
+    clouds = fitting_clouds([clouds_of(entry) for entry in entries], share)
+    kept = fitting(found, room - sum(map(size_of, clouds.clouds)))
+    notes = [*clouds.notes, *kept.notes]
+    if clouds.clouds or kept.pictures or notes:
+        payload = payload_of(entries, heading, pictures=kept, clouds=clouds)
         page = page_of(payload).encode()
     write_file(output, page)
-    for note in kept.notes:
+    for note in notes:
         told(note)
     return output

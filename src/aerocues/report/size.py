@@ -1,4 +1,4 @@
-"""Keeps the page small enough to be mailed: pictures give way first."""
+"""Keeps the page small enough to be mailed: pictures and clouds give way first."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import chain, zip_longest
 from typing import Any
 
+from aerocues.report.clouds import Clouds
 from aerocues.report.pictures import Pictures
 
 
@@ -28,7 +29,7 @@ def fitting(found: Sequence[Pictures], room: int) -> Pictures:
     for picture in filter(None, turns):
         new = {key: images[key] for key in (picture["image_1"], picture["image_2"])}
         new = {key: image for key, image in new.items() if key not in kept.images}
-        needed = _size(picture) + sum(_size(image) for image in new.values())
+        needed = size_of(picture) + sum(size_of(image) for image in new.values())
         if left_out or needed > room:
             left_out += 1
             continue
@@ -43,6 +44,32 @@ def fitting(found: Sequence[Pictures], room: int) -> Pictures:
     return kept
 
 
-def _size(facts: dict[str, Any]) -> int:
+def fitting_clouds(found: Sequence[Clouds], room: int) -> Clouds:
+    """As many clouds as there is room for, the most important of each entry first.
+
+    Parameters
+    ----------
+    found : sequence of Clouds
+        One an entry.
+    room : int
+        Bytes.
+    """
+    kept = Clouds(notes=[note for each in found for note in each.notes])
+    turns = list(filter(None, chain.from_iterable(zip_longest(*(each.clouds for each in found)))))
+    for cloud in turns:
+        room -= size_of(cloud)
+        if room < 0:
+            break
+        kept.clouds.append(cloud)
+    left_out = len(turns) - len(kept.clouds)
+    if left_out:
+        kept.notes.append(
+            f"{left_out} of {len(turns)} clouds are left out to keep the page small "
+            "(--max-megabytes)"
+        )
+    return kept
+
+
+def size_of(facts: dict[str, Any]) -> int:
     """Bytes as JSON, with the key and commas around it."""
     return len(json.dumps(facts, separators=(",", ":"))) + 200

@@ -163,9 +163,16 @@ def relate_outcomes(
     if rows.is_empty():
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
     chosen = preset_named(preset) if preset else suitable_preset(rows)
-    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
-    features = _features(rows.with_columns(name), chance_fails=chosen.chance_fails)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
+    return relations_of(rows, models, chance_fails=chosen.chance_fails)
+
+
+def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool) -> Relations:
+    """The same for rows and reconstructions of one dataset; see `relate_outcomes`."""
+    import polars as pl
+
+    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    features = _features(rows.with_columns(name), chance_fails=chance_fails)
     joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
     if len(joined) < FEWEST:
         raise ScoreError(

@@ -3,6 +3,7 @@
 const payload = JSON.parse(document.getElementById("payload").textContent);
 
 const decodedArrays = new WeakMap();
+const NO_VALUE = 65535;
 
 function bytesOf(base64) {
   const characters = atob(base64);
@@ -11,14 +12,16 @@ function bytesOf(base64) {
   return bytes;
 }
 
-/* {"f32": ...} or {"u8": ...} as a typed array; an empty one for nothing. */
+/* {"f32": ...}, {"u8": ...} or {"u16": ..., low, high} as a typed array; an empty one for nothing. */
 function arrayOf(packed) {
   if (!packed) return new Float32Array(0);
-  if (!decodedArrays.has(packed)) {
-    const array = packed.u8 === undefined
-      ? new Float32Array(bytesOf(packed.f32).buffer)
-      : bytesOf(packed.u8);
-    decodedArrays.set(packed, array);
-  }
+  if (!decodedArrays.has(packed)) decodedArrays.set(packed, decoded(packed));
   return decodedArrays.get(packed);
+}
+
+function decoded({f32, u8, u16, low, high}) {
+  if (u8 !== undefined) return bytesOf(u8);
+  if (f32 !== undefined) return new Float32Array(bytesOf(f32).buffer);
+  return Float32Array.from(new Uint16Array(bytesOf(u16).buffer),
+    code => (code === NO_VALUE ? NaN : low + (code / (NO_VALUE - 1)) * (high - low)));
 }

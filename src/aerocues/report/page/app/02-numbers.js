@@ -47,6 +47,10 @@ const LABELS = {
   score: "CUES", f1_score: "F1 score", points_3d: "3D points",
   f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "time of detecting",
   describe_seconds: "time of describing", match_seconds: "time of matching", verify_seconds: "time of verifying",
+  position_rmse: "position RMSE", position_error_share: "position error / extent",
+  cloud_distance_median: "C2C median", cloud_distance_rms: "C2C RMS", cloud_distance_p95: "C2C 95th percentile",
+  reference_distance_median: "C2C back, median", reference_distance_rms: "C2C back, RMS",
+  reference_distance_p95: "C2C back, 95th percentile", reconstruction_seconds: "time of reconstruction",
 };
 
 /* A column's name in words: `gt_precision@3` as "true precision at 3 px". */

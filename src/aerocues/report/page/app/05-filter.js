@@ -44,15 +44,21 @@ function chosenChips(code) {
   return new Set(state.get(code).split(",").filter(Boolean));
 }
 
-/* Whether each combination of an entry passes the words and the chips. */
-function passing(entry) {
+/* The filter as it stands: whether a combination passes the words and the chips, by its four names
+   and, where they are at hand, the same in lower case. */
+function currentFilter() {
   const words = parseFilter(state.get("q"));
-  const chips = CODES.map(code => [entry[code], chosenChips(code)]).filter(([, set]) => set.size);
-  return partsOfNames(entry).map((parts, a) =>
-    chips.every(([names, set]) => set.has(names[a]))
+  const chips = CODES.map(chosenChips);
+  return (names, parts = names.map(name => name.toLowerCase())) =>
+    chips.every((set, i) => !set.size || set.has(names[i]))
     && words.and.every(word => wordMatches(word, parts))
     && (!words.or.length || words.or.some(word => wordMatches(word, parts)))
-    && !words.not.some(word => wordMatches(word, parts)));
+    && !words.not.some(word => wordMatches(word, parts));
+}
+
+function passing(entry) {
+  const passes = currentFilter();
+  return partsOfNames(entry).map((parts, a) => passes(CODES.map(code => entry[code][a]), parts));
 }
 
 /* Words that are part of no combination anywhere. */

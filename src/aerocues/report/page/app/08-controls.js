@@ -37,6 +37,20 @@ function selectControl(figureId, control) {
   }};
 }
 
+/* A box to tick: {key, label, shown}; its key is `figure.key`, a class of the same name its colour. */
+function layerControl(figureId, layer) {
+  const key = `${figureId}.${layer.key}`;
+  const box = make("input", {type: "checkbox", "data-layer": layer.key, onchange: () =>
+    state.set({[key]: box.checked === layer.shown ? null : (box.checked ? "yes" : "no")})});
+  const value = () => (state.get(key) ? state.get(key) === "yes" : layer.shown);
+  return {
+    element: make("label", {class: `control layer ${layer.key}`}, box,
+      make("span", {class: "swatch", "aria-hidden": "true"}), layer.label),
+    refresh: () => { box.checked = value(); },
+    value,
+  };
+}
+
 function optionElements(options) {
   const groups = new Map();
   for (const option of options) {

@@ -1,5 +1,7 @@
 /* Section 1: the answer, in words and a few figures, then the table of all. */
 
+let rankingTable = null;
+
 addSection({
   id: "answer",
   title: "Answer",
@@ -7,14 +9,14 @@ addSection({
     + "(0 is the worst seen in everything, 1 the best), and how sure that is.",
   build(body) {
     body.append(make("div", {id: "verdict"}), make("div", {id: "all"}));
-    buildRankingTable(document.getElementById("all") ?? body.lastChild);
+    rankingTable = addColumnTable(body.lastChild, RANKING);
   },
   update(body, changed) {
     const figuresOnly = [...changed].every(key => key.includes(".") || key === "theme");
     if (!figuresOnly && [...changed].some(key => !["sort", "columns", "rows"].includes(key))) {
       body.querySelector("#verdict").replaceChildren(...verdict(currentEntry()));
     }
-    if (!figuresOnly) updateRankingTable(changed);
+    if (!figuresOnly) updateColumnTable(rankingTable, changed);
   },
 });
 

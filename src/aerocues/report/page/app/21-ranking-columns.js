@@ -1,6 +1,5 @@
 /* The columns of the table of all combinations. */
 
-/* {key, label, title, value(a), text(a), cell(a), number, usual}: `usual` ones are shown at first. */
 function rankingColumns(entry) {
   return remember(entry, "ranking columns", () => [
     ...scoreColumns(entry), ...methodColumns(entry), ...meanColumns(entry), ...timeColumns(entry)]);

@@ -62,13 +62,10 @@ function buildPictures(body) {
     left: selectControl("picture", combinationChoice("left", "First", 0)),
     right: selectControl("picture", combinationChoice("right", "Second", 1)),
     every: selectControl("picture", EVERY)};
-  const layers = LAYERS.map(layer => make("label", {class: `control layer ${layer.key}`},
-    make("input", {type: "checkbox", "data-layer": layer.key, onchange: event => state.set({
-      [`picture.${layer.key}`]: event.target.checked === layer.shown ? null : (event.target.checked ? "yes" : "no")})}),
-    make("span", {class: "swatch", "aria-hidden": "true"}), layer.label));
+  const layers = LAYERS.map(layer => layerControl("picture", layer));
   const panels = ["left", "right"].map(side => buildPanel(side));
-  Object.assign(pictureView, {controls, panels, layers: layers.map(label => label.querySelector("input"))});
-  body.append(make("div", {class: "controls"}, Object.values(controls).map(control => control.element), layers),
+  Object.assign(pictureView, {controls, panels, layers});
+  body.append(make("div", {class: "controls"}, [...Object.values(controls), ...layers].map(control => control.element)),
     make("div", {class: "panels"}, panels.map(panel => panel.element)));
 }
 
@@ -83,14 +80,8 @@ function buildPanel(side) {
   return panel;
 }
 
-function layerShown(layer) {
-  const value = state.get(`picture.${layer.key}`);
-  return value ? value === "yes" : layer.shown;
-}
-
 function updatePictures() {
-  for (const control of Object.values(pictureView.controls)) control.refresh();
-  pictureView.layers.forEach((box, i) => { box.checked = layerShown(LAYERS[i]); });
+  for (const control of [...Object.values(pictureView.controls), ...pictureView.layers]) control.refresh();
   for (const panel of pictureView.panels) updatePanel(panel);
 }
 

@@ -66,8 +66,9 @@ function at(place, image, x, y) {
 /* Draws what is switched on; tells in words what was drawn. */
 function drawLayers(pen, picture, place) {
   const words = [];
-  if (layerShown(LAYERS[2])) words.push(drawKeypoints(pen, picture, place));
-  const wanted = {1: layerShown(LAYERS[0]), 0: layerShown(LAYERS[1])};
+  const [inliers, outliers, keypoints] = pictureView.layers.map(layer => layer.value());
+  if (keypoints) words.push(drawKeypoints(pen, picture, place));
+  const wanted = {1: inliers, 0: outliers};
   if (wanted[0] || wanted[1]) words.push(drawMatches(pen, picture, place, wanted));
   return words.join(" ") || "No layer is switched on.";
 }
