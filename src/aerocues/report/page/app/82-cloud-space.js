@@ -33,7 +33,7 @@ function projection({yaw, pitch, zoom}, {centre, radius}, width, height) {
   const [ca, sa, cb, sb] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b)];
   const [cx, cy, cz] = centre;
   const eye = EYE * radius;
-  const scale = zoom * 0.62 * Math.min(width, height * 1.3) / radius;
+  const scale = zoom * 0.42 * Math.min(width, height * 1.3) / radius;
   return (x, y, z, out) => {
     const [dx, dy, dz] = [x - cx, y - cy, z - cz];
     const along = sa * dx + ca * dy;

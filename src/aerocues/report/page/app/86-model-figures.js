@@ -59,7 +59,7 @@ const OUTCOME_MATRIX = {
     return {
       ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: found[option("measure")], theme, narrow,
         what: option("measure") === "spearman" ? "Spearman" : "Pearson"}),
-      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations; those that pass the filter are no choice of their own here.`,
+      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations, whatever the filter.`,
     };
   },
 };
@@ -94,10 +94,9 @@ function outcomePoints({entry, option, theme, narrow}) {
   const [xName, yName] = [option("x"), option("y")];
   const place = new Map(models.combinations.map((name, m) => [name, m]));
   const passes = currentFilter();
-  const ofModel = yName !== "registered_images";
   const found = combinations.map((name, i) => ({name, x: values[xName][i], m: place.get(name)}))
-    .map(each => ({...each, y: models.values[yName]?.[each.m] ?? (ofModel ? null : 0)}))
-    .filter(({name, x, y, m}) => passes(name.split("-")) && isKnown(x) && isKnown(y) && (!ofModel || models.status[m] === "ok"));
+    .map(each => ({...each, y: outcomeOf(models, yName, each.m)}))
+    .filter(({name, x, y}) => passes(name.split("-")) && isKnown(x) && isKnown(y));
   if (!found.length) return {empty: "None of these combinations has both values."};
   const code = CODES.indexOf(option("colour"));
   const groups = [...new Set(found.map(({name}) => name.split("-")[code]))].sort();
@@ -113,4 +112,16 @@ function outcomePoints({entry, option, theme, narrow}) {
     layout: scatterFrame({title: labelOf(xName), nticks: narrow ? 5 : 8}, {title: labelOf(yName)}, narrow),
     note: `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
   };
+}
+
+const WITHOUT_MODEL = ["no_features", "no_verified_pair", "no_initial_pair", "no_model"];
+
+/* The value that counts for a relation, as in `scoring/outcomes.py`: no model is 0 images, a crash is unknown; what
+   describes a model is of those that succeeded; the reference has no distance to itself. */
+function outcomeOf(models, name, m) {
+  const value = models.values[name]?.[m] ?? null;
+  const status = models.status[m];
+  if (name === "registered_images") return value ?? (WITHOUT_MODEL.includes(status) ? 0 : null);
+  if (status !== "ok" || (name.includes("_distance_") && models.combinations[m] === models.reference)) return null;
+  return value;
 }
