@@ -24,6 +24,13 @@ def numbers(packed: dict[str, str], *shape: int) -> NDArray[np.uint8]:
     return np.frombuffer(base64.b64decode(packed["u8"]), np.uint8).reshape(shape)
 
 
+def scaled(packed: dict[str, Any]) -> NDArray[np.float64]:
+    """Numbers of 16 bits between two bounds; NaN where there is none."""
+    codes = np.frombuffer(base64.b64decode(packed["u16"]), "<u2")
+    values = packed["low"] + codes / 65534 * (packed["high"] - packed["low"])
+    return np.where(codes == 65535, np.nan, values)
+
+
 def payload_in(page: Path) -> dict[str, Any]:
     """The payload of a page."""
     found = PAYLOAD.findall(page.read_text(encoding="utf-8"))

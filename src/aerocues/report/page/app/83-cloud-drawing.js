@@ -122,7 +122,7 @@ function roundLength(most) {
 
 function drawAxes(pen, turn, width, height, density) {
   const project = projection({...turn, zoom: 1}, {centre: [0, 0, 0], radius: 1}, 100, 100);
-  const [x, y, reach] = [width - 34 * density, height - 30 * density, 0.42 * density];
+  const [x, y, reach] = [width - 34 * density, height - 30 * density, 0.62 * density];
   const spot = [0, 0, 0];
   Object.assign(pen, {textAlign: "center"});
   [["E", 1, 0, 0], ["N", 0, 1, 0], ["up", 0, 0, 1]].forEach(([name, ...end]) => {
