@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tests.report.small_models import small_clouds, small_models
+
 HARMFUL = '<img src=x onerror="window.harmed = true">'
 BREAKING = "</script><script>window.harmed = true</script>"
 PIXEL = (
@@ -50,6 +52,7 @@ def names_of(methods: tuple[tuple[str, ...], ...] = METHODS) -> list[str]:
 def small_payload() -> dict[str, Any]:
     """Two data sets and machines with everything, and an imported one with the least."""
     full = entry_of("images", seed=0, name=f"images {HARMFUL}")
+    full["models"] = small_models(METHODS, HARMFUL)
     other = entry_of("images", seed=1, name="images (other)")
     return {
         **frame_of([full, other, imported_entry()]),
@@ -57,6 +60,7 @@ def small_payload() -> dict[str, Any]:
         "machines": [machines_of(full["name"], other["name"])],
         "images": {key: {"src": PIXEL, "width": 60, "height": 40, "scale": 0.5} for key in "ab"},
         "pictures": [picture_of(full, 3, 0), picture_of(full, 0, 0), picture_of(full, 3, 5)],
+        "clouds": small_clouds(full["name"]),
     }
 
 
@@ -77,7 +81,7 @@ def frame_of(entries: list[dict[str, Any]]) -> dict[str, Any]:
         "incompatible": {"KAZE-SIFT-HAM-BF": "SIFT <descriptors> are floats & HAM needs bits"},
         "images": {},
         "pictures": [],
-        "models": [],
+        "clouds": [],
         "method": {
             "columns": [{"name": "precision", "unit": "ratio", "definition": "inliers / matches"}],
             "criteria": [],

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from aerocues.errors import MethodUnavailableError, StoreError
 from aerocues.evaluation.export import write_file
 from aerocues.report.entry import ReportEntry
+from aerocues.report.model_figures import draw_models, draw_relation
 from aerocues.report.relation_figures import draw_critical_difference, draw_pareto, draw_times
 from aerocues.report.score_figures import draw_heat_maps, draw_scores, draw_weights
 
@@ -25,6 +26,8 @@ FIGURES: Mapping[str, Callable[[ReportEntry], Figure | None]] = {
     "pareto": draw_pareto,
     "times": draw_times,
     "critical-difference": draw_critical_difference,
+    "models": draw_models,
+    "models-relation": draw_relation,
 }
 FORMS: Mapping[str, Mapping[str, Any]] = {
     # Without the date, the same data give the same file.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from aerocues.evaluation.typesetting import as_markdown
 from aerocues.report.comparison import comparison_of
 from aerocues.report.entry import ReportEntry
+from aerocues.report.model_figures import ordered_models
 from aerocues.report.scores import GOOD, best_binary, cautions, fastest_good
 
 if TYPE_CHECKING:
@@ -52,6 +54,9 @@ def _entry(found: ReportEntry, *, heading: bool) -> Iterator[str]:
     yield ""
     yield as_markdown(_table(found)).rstrip()
     yield ""
+    if not found.models.is_empty():
+        yield from _models(found)
+        yield ""
     yield _how(found)
 
 
@@ -92,6 +97,25 @@ def _others(found: ReportEntry) -> Iterator[str]:
     if binary is not None:
         yield f"- best binary descriptor: `{names[binary]}`"
     yield from (f"- {caution}" for caution in cautions(ranking))
+
+
+def _models(found: ReportEntry) -> Iterator[str]:
+    """The best models, and how many failed for what reason."""
+    rows = ordered_models(found)
+    good = [row for row in rows if row["status"] == "ok"]
+    yield f"3D models: {len(good)} of {len(rows)} reconstructions succeeded."
+    for row in good[:NAMED]:
+        images = "" if row["images"] is None else f"{row['registered_images']} of {row['images']} "
+        facts = [f"{images}images" if images else "", f"{row['points_3d']:,} points"]
+        if row["reprojection_error"] is not None:
+            facts.append(f"{row['reprojection_error']:.2f} px")
+        if row["position_rmse"] is not None:
+            facts.append(f"cameras {row['position_rmse']:.1f} m off")
+        yield f"- `{row['name']}`: {', '.join(filter(None, facts))}"
+    failed = Counter(row["status"] for row in rows if row["status"] != "ok")
+    if failed:
+        told = ", ".join(f"{status.replace('_', ' ')} {n}" for status, n in failed.most_common())
+        yield f"- failed: {told}"
 
 
 def _listed(names: Sequence[str]) -> str:
