@@ -62,7 +62,7 @@ def report(
         typer.Option(min=0, metavar="N", help="Combinations of a data set shown in pictures."),
     ] = 4,
     max_megabytes: Annotated[
-        float, typer.Option(min=5, metavar="MB", help="Leave out pictures beyond this size.")
+        float, typer.Option(min=5, metavar="MB", help="Leave out pictures and clouds beyond it.")
     ] = 15,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
