@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import polars as pl
+
 from aerocues import Results
+from aerocues.evaluation.store import Store
 from aerocues.report.markdown import summary
 from aerocues.report.payload import payload_of
 from aerocues.report.report import report_entries
 from tests.report.made_up import COMBINATIONS, folder_of, measured
+from tests.report.made_up_models import made_models, with_models
 
 
 def test_the_answer_comes_first(flight: Results) -> None:
@@ -51,3 +55,14 @@ def test_few_sequences_are_cautioned_about(tmp_path: Path) -> None:
     told = "with only 2 sequences the intervals are too narrow"
     assert told in summary(entries, "Mine")
     assert told in payload_of(entries, "Mine")["method"]["notes"][0]
+
+
+def test_figures_of_models_may_be_missing(tmp_path: Path) -> None:
+    results = with_models(tmp_path)
+    methods = ("dataset", "detector", "descriptor", "norm", "matcher")
+    points = pl.when(pl.col("detector") != "AKAZE").then(pl.col("points_3d"))
+    few = made_models()[0].select(*methods, "status", points, "reprojection_error")
+    Store.open(results.folder).write_reconstructions(few)
+    text = summary(report_entries([results], resamples=50), "Mine")
+    assert "- `ORB-ORB-HAM-BF`: 12,000 points, 0.60 px\n" in text
+    assert "- `AKAZE-AKAZE-HAM-BF`: 0.70 px\n" in text

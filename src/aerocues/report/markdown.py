@@ -105,13 +105,17 @@ def _models(found: ReportEntry) -> Iterator[str]:
     good = [row for row in rows if row["status"] == "ok"]
     yield f"3D models: {len(good)} of {len(rows)} reconstructions succeeded."
     for row in good[:NAMED]:
-        images = "" if row["images"] is None else f"{row['registered_images']} of {row['images']} "
-        facts = [f"{images}images" if images else "", f"{row['points_3d']:,} points"]
+        # Imported figures may lack any of these.
+        facts = []
+        if row["registered_images"] is not None and row["images"] is not None:
+            facts.append(f"{row['registered_images']} of {row['images']} images")
+        if row["points_3d"] is not None:
+            facts.append(f"{row['points_3d']:,} points")
         if row["reprojection_error"] is not None:
             facts.append(f"{row['reprojection_error']:.2f} px")
         if row["position_rmse"] is not None:
             facts.append(f"cameras {row['position_rmse']:.1f} m off")
-        yield f"- `{row['name']}`: {', '.join(filter(None, facts))}"
+        yield f"- `{row['name']}`: {', '.join(facts)}"
     failed = Counter(row["status"] for row in rows if row["status"] != "ok")
     if failed:
         told = ", ".join(f"{status.replace('_', ' ')} {n}" for status, n in failed.most_common())

@@ -67,7 +67,7 @@ def draw_relation(found: ReportEntry) -> Figure | None:
     from matplotlib.figure import Figure
 
     known = [row for row in ordered_models(found) if row["points_3d"] is not None]
-    means = _means(found)
+    column, means = _means(found)
     known = [row for row in known if np.isfinite(means.get(row["name"], np.nan))]
     if not known:
         return None
@@ -85,14 +85,14 @@ def draw_relation(found: ReportEntry) -> Figure | None:
                 label=label,
             )
     axes.grid()
-    axes.set_xlabel("mean inliers of a pair of images")
+    axes.set_xlabel(f"mean of {column.replace('_', ' ')} over the pairs of images")
     axes.set_ylabel("3D points")
     axes.legend(loc="best")
     axes.set_title(found.name)
     return figure
 
 
-def _means(found: ReportEntry) -> dict[str, float]:
+def _means(found: ReportEntry) -> tuple[str, dict[str, float]]:
     """Mean inliers over the pairs that succeeded, beyond chance where that was measured."""
     import polars as pl
 
@@ -103,4 +103,4 @@ def _means(found: ReportEntry) -> dict[str, float]:
     name = pl.concat_str(METHODS, separator="-").alias("name")
     succeeded = rows.filter(pl.col("status").is_in(found.succeeded))
     means = succeeded.group_by(name).agg(pl.col(column).mean()).drop_nulls()
-    return dict(means.iter_rows())
+    return column, dict(means.iter_rows())
