@@ -10,14 +10,11 @@ import pytest
 
 import aerocues
 from aerocues.evaluation.store import Store
-from aerocues.report.clouds import MOST_POINTS, clouds_of
+from aerocues.report.clouds import clouds_of
 from aerocues.report.entry import entry_facts
 from aerocues.report.figures import write_figures
 from aerocues.report.markdown import summary
-from aerocues.report.payload import payload_of
 from aerocues.report.report import report_entries, write_report
-from aerocues.report.size import fitting_clouds, size_of
-from tests.report.decoding import floats, scaled
 from tests.report.made_up import folder_of, measured
 from tests.report.made_up_models import MODELLED, with_models
 
@@ -72,52 +69,6 @@ def test_imported_figures_are_enough(tmp_path: Path) -> None:
     ]
     [found] = report_entries([results])
     assert clouds_of(found).clouds == []
-
-
-def test_clouds_that_are_worth_a_look_come_first(tmp_path: Path) -> None:
-    results = with_models(tmp_path, points=MOST_POINTS + 500)
-    [found] = report_entries([results])
-    clouds = clouds_of(found).clouds
-    names = [cloud["combination"] for cloud in clouds]
-    assert names[0] == MODELLED[0]
-    assert "reference of the distances" in clouds[0]["why"]
-    assert MODELLED[3] in names  # the bent one, to be seen
-    assert MODELLED[5] not in names  # without a model
-    points = scaled(clouds[0]["points"], -1)
-    assert points.size == 3 * MOST_POINTS
-    assert clouds[0]["all_points"] == MOST_POINTS + 500
-    assert clouds_of(found).clouds == clouds  # the same sample again
-
-
-def test_a_damaged_cloud_is_noted(tmp_path: Path) -> None:
-    results = with_models(tmp_path)
-    Store.open(results.folder).cloud_files()[0].write_bytes(b"half a cloud")
-    [found] = report_entries([results])
-    assert any("is damaged" in note for note in clouds_of(found).notes)
-
-
-def test_clouds_give_way_where_there_is_no_room(results: aerocues.Results) -> None:
-    [found] = report_entries([results])
-    every = clouds_of(found)
-    room = sum(map(size_of, every.clouds[:2])) + 10
-    kept = fitting_clouds([every], room)
-    assert kept.clouds == every.clouds[:2]
-    left = len(every.clouds) - 2
-    assert kept.notes == [
-        f"{left} of {len(every.clouds)} clouds are left out to keep the page small "
-        "(--max-megabytes)"
-    ]
-    assert payload_of([found], "title", clouds=kept)["clouds"][0]["combination"] == MODELLED[0]
-
-
-def test_models_without_a_scale_are_laid_upright(tmp_path: Path) -> None:
-    results = with_models(tmp_path, unit="unit")
-    [found] = report_entries([results])
-    clouds = clouds_of(found).clouds
-    assert {cloud["unit"] for cloud in clouds} == {"unit"}
-    for cloud in clouds:
-        heights = floats(cloud["centres"], -1, 3)[:, 2]
-        assert heights.min() > scaled(cloud["points"], -1, 3)[:, 2].mean()
 
 
 def test_the_report_holds_the_clouds(results: aerocues.Results, tmp_path: Path) -> None:
