@@ -70,7 +70,7 @@ class ReconstructionProtocol:
     chance : ChanceTest or None
         Pairs whose matches do not beat chance are not given to COLMAP. With thousands of
         keypoints, images that share nothing have more than enough matches to be verified by
-        COLMAP's rules, and bend the model.
+        COLMAP's rules; they cost most of the time of mapping, and some pull cameras away.
     """
 
     seed: int = 0
