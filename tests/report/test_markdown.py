@@ -61,7 +61,8 @@ def test_figures_of_models_may_be_missing(tmp_path: Path) -> None:
     results = with_models(tmp_path)
     methods = ("dataset", "detector", "descriptor", "norm", "matcher")
     points = pl.when(pl.col("detector") != "AKAZE").then(pl.col("points_3d"))
-    few = made_models()[0].select(*methods, "status", points, "reprojection_error")
+    figures = ("reprojection_error", "reconstruction_seconds")
+    few = made_models()[0].select(*methods, "status", points, *figures)
     Store.open(results.folder).write_reconstructions(few)
     text = summary(report_entries([results], resamples=50), "Mine")
     assert "- `ORB-ORB-HAM-BF`: 12,000 points, 0.60 px\n" in text
