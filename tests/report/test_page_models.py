@@ -138,3 +138,23 @@ def test_relations_follow_the_measure(open_report: Open) -> None:
     assert "over 6 combinations" in note.inner_text()
     opened.page.fill("#filter", "and sift")
     opened.page.locator("#figure-outcome .note", has_text="over 3 combinations").wait_for()
+
+
+def test_clouds_are_light_on_paper(open_report: Open) -> None:
+    opened = open_report(color_scheme="dark")
+    opened.page.locator("#clouds").scroll_into_view_if_needed()
+    corner = (
+        "[...document.querySelector('canvas[data-side=left]').getContext('2d')"
+        ".getImageData(2, 2, 1, 1).data].slice(0, 3)"
+    )
+    assert max(opened.page.evaluate(corner)) < 60
+    opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert opened.page.evaluate(corner) == [255, 255, 255]
+    opened.page.evaluate("window.dispatchEvent(new Event('afterprint'))")
+    assert max(opened.page.evaluate(corner)) < 60
+
+
+def test_who_wants_no_motion_is_offered_none(open_report: Open) -> None:
+    opened = open_report(reduced_motion="reduce")
+    assert opened.page.locator("#turn-clouds").is_hidden()
+    assert opened.page.get_by_role("button", name="Turn to the left").is_visible()

@@ -29,7 +29,7 @@ addSection({
       updateColumnTable(modelParts.table, changed);
       modelParts.made.textContent = howMade(models);
     }
-    if (cloudsOf(entry).length) updateClouds();
+    refreshClouds();
   },
 });
 

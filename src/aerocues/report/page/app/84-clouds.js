@@ -1,5 +1,6 @@
 /* Two clouds side by side, turned together: by dragging, keys, buttons, or by themselves. */
 
+const stillWanted = window.matchMedia("(prefers-reduced-motion: reduce)");
 const cloudView = {turn: {...FRONT}, playing: false};
 const CLOUD_LAYERS = [
   {key: "cameras", label: "Cameras", shown: true},
@@ -37,7 +38,7 @@ function buildClouds(parent) {
   const controls = {left: selectControl("cloud", cloudChoice("left", "First", 0)),
     right: selectControl("cloud", cloudChoice("right", "Second", 1)), colour: selectControl("cloud", CLOUD_COLOURS)};
   const layers = CLOUD_LAYERS.map(layer => layerControl("cloud", layer));
-  const play = make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false", onclick: () => setPlaying(!cloudView.playing)}, "Turn");
+  const play = make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false", hidden: stillWanted.matches, onclick: () => setPlaying(!cloudView.playing)}, "Turn");
   const buttons = TURNS.map(([sign, label, key]) => make("button", {type: "button", class: "quiet", "aria-label": label, title: label, onclick: () => turnBy(key)}, sign));
   const panels = ["left", "right"].map(side => buildCloudPanel(side));
   const legend = make("div", {class: "cloud-legend"});
@@ -59,6 +60,10 @@ function buildCloudPanel(side) {
   listenToTurns(canvas);
   new ResizeObserver(() => drawClouds()).observe(panel.element);
   return panel;
+}
+
+function refreshClouds() {
+  if (cloudsOf(currentEntry()).length) updateClouds();
 }
 
 function updateClouds() {

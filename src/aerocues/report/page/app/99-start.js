@@ -26,6 +26,7 @@ function start() {
   window.addEventListener("afterprint", () => {
     document.documentElement.classList.remove("printing");
     applyTheme();
+    refreshClouds();
     for (const figure of figures) figure.stale = true;
     drawStale();
   });
@@ -36,6 +37,7 @@ function start() {
 function drawForPrint() {
   document.documentElement.classList.add("printing");
   applyTheme();
+  refreshClouds();
   for (const figure of figures) drawFigure(figure);
 }
 
