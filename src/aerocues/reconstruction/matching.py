@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import OrderedDict
 from collections.abc import Callable
 
@@ -14,7 +13,7 @@ from aerocues.evaluation.features import FeatureExtractor, StageError, run_stage
 from aerocues.evaluation.unit import StageCall
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
-from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.methods.making import MatcherStage, make_descriptor, make_detector, make_matcher
 from aerocues.methods.strongest import strongest
 from aerocues.reconstruction.feature_files import FeatureFiles, TimedFeatures
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
@@ -44,7 +43,8 @@ class SceneMatcher:
         self._combination = combination
         self._announce = announce
         self._files = FeatureFiles(scene, combination)
-        self._extractor = FeatureExtractor(Clock(memory=False), scene.protocol.seed)
+        self._clock = Clock(memory=False)
+        self._extractor = FeatureExtractor(self._clock, scene.protocol.seed)
         self._held: OrderedDict[str, Features] = OrderedDict()
         self._made: tuple[object, object] | None = None
 
@@ -120,15 +120,19 @@ class SceneMatcher:
             matches = Matches()
             if len(first) and len(second):
                 self._announce(call_of("matching", combination, images))
-                cv2.setRNGSeed(self._scene.protocol.seed)
-                begun = time.thread_time()
-                matches = run_stage(
-                    f"{combination} matching {images}",
-                    lambda: matcher.read(matcher.call(first, second)),  # noqa: B023
-                )
-                seconds += time.thread_time() - begun
+                matches, taken = self._match_pair(matcher, (first, second), images)
+                seconds += taken
             pairs[pair.image_1, pair.image_2] = PairMatches(matches.indices, matches.distance)
         return pairs, seconds
+
+    def _match_pair(
+        self, matcher: MatcherStage, features: tuple[Features, Features], images: str
+    ) -> tuple[Matches, float]:
+        """Matches and the CPU seconds of the call alone."""
+        what = f"{self._combination} matching {images}"
+        cv2.setRNGSeed(self._scene.protocol.seed)
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(*features)))
+        return run_stage(what, lambda: matcher.read(raw)), time.cpu
 
     def _held_features(self, name: str) -> Features:
         """Features from memory, where those used last are kept."""
