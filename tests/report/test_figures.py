@@ -15,6 +15,7 @@ from aerocues.report import figures
 from aerocues.report.figures import FIGURES, write_figures
 from aerocues.report.report import report_entries
 from tests.report.made_up import COMBINATIONS, folder_of, measured
+from tests.report.made_up_models import with_models
 
 pytest.importorskip("matplotlib")
 
@@ -26,8 +27,9 @@ def scores_only(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-def test_every_figure_is_drawn_twice(flight: Results, tmp_path: Path) -> None:
-    files = write_figures(report_entries([flight], resamples=50), tmp_path / "new" / "figures")
+def test_every_figure_is_drawn_twice(tmp_path: Path) -> None:
+    results = with_models(tmp_path)
+    files = write_figures(report_entries([results], resamples=50), tmp_path / "new" / "figures")
     names = {f"{name}.{form}" for name in FIGURES for form in ("svg", "pdf")}
     assert {file.name for file in files} == names
     for file in files:
@@ -74,6 +76,7 @@ def test_what_was_not_measured_is_not_drawn(tmp_path: Path) -> None:
     names = {file.stem for file in files}
     assert "times" not in names
     assert "critical-difference" not in names
+    assert not {"models", "models-relation"} & names
     assert "cues" in names
 
 
