@@ -37,3 +37,7 @@ class ScoreError(AerocuesError):
 
 class ReconstructionError(AerocuesError):
     """A scene cannot be reconstructed as asked."""
+
+
+class SimulationError(AerocuesError):
+    """A flight cannot be simulated as asked."""

@@ -1,0 +1,20 @@
+"""Numba's compiler with the settings that all kernels share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def compiled(function: _Function) -> _Function:
+    """Compile a function when it is first called, and keep the machine code on disk.
+
+    Without fast mathematics: the same scene must give the same bytes everywhere. Kernels release
+    the interpreter's lock and use one thread.
+    """
+    compile_it = numba.njit(cache=True, nogil=True, error_model="numpy")
+    return cast("_Function", compile_it(function))

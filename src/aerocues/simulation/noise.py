@@ -1,0 +1,70 @@
+"""Value noise in the world's plane whose octaves fade out before a pixel could alias them.
+
+A point has the same value in every view, as far as the view resolves it; that is what makes
+matches between rendered images possible and exact.
+"""
+
+from __future__ import annotations
+
+import math
+
+from aerocues.simulation.compiled import compiled
+
+
+@compiled
+def hashed(i: int, j: int, k: int) -> float:
+    """A number in [0, 1) that three integers determine."""
+    mixed = (i * 374761393 + j * 668265263 + k * 1442695041) & 0xFFFFFFFF
+    mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0xFFFFFFFF
+    mixed = ((mixed ^ (mixed >> 15)) * 1103515245) & 0xFFFFFFFF
+    return (mixed ^ (mixed >> 16)) * (1.0 / 4294967296.0)
+
+
+@compiled
+def value_noise(x: float, y: float, seed: int) -> float:
+    """Smooth noise in [-1, 1] whose lattice has the unit as its side."""
+    floor_x, floor_y = math.floor(x), math.floor(y)
+    i, j = int(floor_x), int(floor_y)
+    u, v = x - floor_x, y - floor_y
+    u, v = u * u * (3 - 2 * u), v * v * (3 - 2 * v)
+    near = hashed(i, j, seed) * (1 - u) + hashed(i + 1, j, seed) * u
+    far = hashed(i, j + 1, seed) * (1 - u) + hashed(i + 1, j + 1, seed) * u
+    return 2 * (near * (1 - v) + far * v) - 1
+
+
+@compiled
+def resolved(wavelength: float, footprint: float) -> float:
+    """How much of a structure a pixel can show: 0 below its footprint, 1 from three times it."""
+    return min(max(0.5 * (wavelength / footprint - 1.0), 0.0), 1.0)
+
+
+@compiled
+def fractal_noise(
+    x: float, y: float, longest: float, shortest: float, gain: float, footprint: float, seed: int
+) -> float:
+    """Octaves from the longest to the shortest wavelength, in about [-1, 1].
+
+    Parameters
+    ----------
+    x, y : float
+        Position in metres.
+    longest, shortest : float
+        Wavelengths in metres; each octave has half of the one before.
+    gain : float
+        Amplitude of an octave over that of the one before; the first has 1.
+    footprint : float
+        Side of a pixel on the surface in metres; shorter octaves fade to their mean, 0.
+    seed : int
+    """
+    total, amplitude, wavelength = 0.0, 1.0, longest
+    while wavelength >= shortest:
+        share = resolved(wavelength, footprint)
+        if share <= 0.0:
+            break
+        total += amplitude * share * value_noise(x / wavelength, y / wavelength, seed)
+        # Turned from octave to octave: aligned lattices would show as a grid.
+        x, y = 0.8 * x - 0.6 * y + 17.3, 0.6 * x + 0.8 * y - 9.1
+        amplitude *= gain
+        wavelength *= 0.5
+        seed += 1
+    return total

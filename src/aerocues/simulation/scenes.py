@@ -1,0 +1,62 @@
+"""The kinds of scene, as a table, and how one is made ready for pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from aerocues.errors import SimulationError
+from aerocues.simulation.lighting import Weather, bake, ground_centres
+from aerocues.simulation.rendering import Stage
+from aerocues.simulation.scene import Scene
+from aerocues.simulation.suburb import build_suburb
+
+HALF = 380.0
+"""Details reach so far from the origin by default: as far as oblique cameras at 140 m see."""
+
+
+@dataclass(frozen=True)
+class SceneKind:
+    """One row of the table: a name, what it shows and a function of the seed and the half size."""
+
+    name: str
+    description: str
+    build: Callable[[int, float], Scene]
+
+
+SCENES: tuple[SceneKind, ...] = (
+    SceneKind("suburb", "houses, gardens, trees, cars, streets, parks: rich", build_suburb),
+)
+_KINDS = {kind.name: kind for kind in SCENES}
+
+
+def build_scene(name: str, seed: int = 0, half: float = HALF) -> Scene:
+    """Build a scene; the same name, seed and size give the same scene.
+
+    Parameters
+    ----------
+    name : str
+        Of a row of `SCENES`.
+    seed : int
+    half : float
+        Metres from the origin to each side that have details; beyond is simple ground.
+
+    Raises
+    ------
+    SimulationError
+        If there is no such scene.
+    """
+    if name not in _KINDS:
+        raise SimulationError(f"there is no scene '{name}'; use {', '.join(_KINDS)}")
+    return _KINDS[name].build(seed, half)
+
+
+def stage(scene: Scene, weather: Weather, time: float = 0.0, wind: float = 0.0) -> Stage:
+    """Bake the light of a scene as it stands after so many seconds, in a wind."""
+    centres = ground_centres(scene.half)
+    heights = scene.terrain.height(centres.reshape(-1, 2)).reshape(centres.shape[:2])
+    mesh = scene.at(time, wind)
+    light = bake(mesh, np.asarray(heights, np.float32), scene.half, weather)
+    return Stage.of(mesh, scene.plan, light)
