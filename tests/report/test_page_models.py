@@ -117,7 +117,7 @@ def test_layers_and_choice_stand_in_the_address(open_report: Open) -> None:
     assert pixels(opened) != with_truth
     assert "cloud.truth=no" in opened.fragment()
     words = opened.page.locator(".panel-of-cloud").first.inner_text()
-    assert "200 of 250 points are drawn, chosen at random; 1 point far off are left out." in words
+    assert "200 of 250 points are drawn, chosen at random; 1 point far off left out." in words
 
 
 def test_a_cloud_is_saved_as_a_picture(open_report: Open, tmp_path: Path) -> None:

@@ -63,14 +63,14 @@ def reconstruct_scene(
     scene = _scene(dataset, output, options)
     chosen = _chosen(scene, combinations, observer)
     reference = Combination.parse(options.reference) if options.reference else None
+    if reference is not None and reference not in chosen and not scene.place(reference).is_dir():
+        raise _no_reference(reference)
     Models.create(output)
     with folder_lock(output):
         scene = _with_cameras(scene, options.limits(), observer)
         others = _others(scene, chosen)
         if reference is not None and reference not in (*chosen, *others):
-            raise ReconstructionError(
-                f"the reference {reference} is not among the combinations; add it to them"
-            )
+            raise _no_reference(reference)
         _write_settings(scene, options)
         finished = _finished(scene, chosen, retry_failed=options.retry_failed)
         observer.planned(len(chosen), len(finished))
@@ -83,6 +83,12 @@ def reconstruct_scene(
                 _write_rows(scene, {**others, **finished}, reference, store)
         remove_features(output)
     return Models(output)
+
+
+def _no_reference(reference: Combination) -> ReconstructionError:
+    return ReconstructionError(
+        f"the reference {reference} is not among the combinations; add it to them"
+    )
 
 
 def _check_scene(dataset: Dataset) -> None:

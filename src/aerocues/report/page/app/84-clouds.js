@@ -121,7 +121,7 @@ function cloudNote(cloud) {
   const drawn = arrayOf(cloud.colours).length / 3;
   const left = cloud.all_points - cloud.strays - drawn;
   return [sentenceCase(cloud.why), left > 0 ? `${shown(drawn)} of ${counted(cloud.all_points, "point")} are drawn, chosen at random`
-    : `${counted(drawn, "point")} are drawn`, cloud.strays ? `${counted(cloud.strays, "point")} far off are left out` : null].filter(Boolean).join("; ") + ".";
+    : `${counted(drawn, "point")} are drawn`, cloud.strays ? `${counted(cloud.strays, "point")} far off left out` : null].filter(Boolean).join("; ") + ".";
 }
 
 const FIGURES_OF_CLOUDS = ["registered_images", "placed_images", "points_3d", "mean_track_length", "reprojection_error", "position_rmse",
