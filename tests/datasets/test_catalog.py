@@ -12,7 +12,8 @@ from aerocues.errors import DatasetError
 def test_the_catalog_is_complete() -> None:
     names = [kind.name for kind in CATALOG]
     assert names == [
-        "synthetic", "synthetic-extended", "oxford", "hpatches", "uav", "flight", "folder",
+        "synthetic", "synthetic-extended", "oxford", "hpatches", "uav", "flight", "simulated",
+        "folder",
     ]  # fmt: skip
     for kind in CATALOG:
         assert all([kind.pairs, kind.ground_truth, kind.needs, kind.layout, kind.where, kind.terms])

@@ -19,6 +19,7 @@ from aerocues.cli import (
     results,
     run,
     score,
+    simulate,
     status,
     validate,
 )
@@ -47,6 +48,7 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
+app.command("simulate")(simulate.simulate)
 app.add_typer(methods.app, name="methods")
 app.add_typer(datasets.app, name="datasets")
 

@@ -13,6 +13,7 @@ from aerocues.datasets.folder import open_flight, open_folder
 from aerocues.datasets.homography_sequences import open_hpatches, open_oxford
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import PairsFile, parse_pairs
+from aerocues.datasets.simulated import open_simulated
 from aerocues.datasets.synthetic import open_synthetic
 from aerocues.datasets.uav import open_uav
 from aerocues.errors import DatasetError
@@ -162,6 +163,19 @@ CATALOG: tuple[DatasetKind, ...] = (
         takes_pairs=True,
     ),
     DatasetKind(
+        name="simulated",
+        form="simulated:DIR",
+        pairs="consecutive by name; others with --pairs",
+        ground_truth="exact poses, intrinsics and depth",
+        needs="a flight that aerocues simulate has made",
+        layout="DIR/**/*.png (.jpg), DIR/truth/poses.csv, camera.json, depth/**/*.npy",
+        geometry="epipolar",
+        where="aerocues simulate -o DIR",
+        terms="your own",
+        load=_in_folder(open_simulated),
+        takes_pairs=True,
+    ),
+    DatasetKind(
         name="folder",
         form="DIR",
         pairs="consecutive by name; others with --pairs",
@@ -193,7 +207,7 @@ def open_dataset(
     ----------
     spec : str
         ``synthetic[:IMAGE]``, ``synthetic-extended[:IMAGE]``, ``oxford:DIR``, ``hpatches:DIR``,
-        ``uav:DIR``, ``flight:DIR``, or the path of a plain folder.
+        ``uav:DIR``, ``flight:DIR``, ``simulated:DIR``, or the path of a plain folder.
     pairs : str, optional
         ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m`` or the
         path of a pairs file; for the kinds without pairs of their own.

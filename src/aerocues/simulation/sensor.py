@@ -14,7 +14,7 @@ _FULL_WELL = 9000.0
 _READ_NOISE = 4.0
 _EXPOSURE = 0.82
 _SHOULDER = 0.72
-_CONTRAST = 0.55
+_CONTRAST = 0.45
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,88 @@
+"""`aerocues simulate`: flies a survey over a scene that never was, with exact ground truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from aerocues.simulation.flight import Settings
+
+
+def simulate(
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Folder of the flight.")
+    ],
+    survey: Annotated[
+        str,
+        typer.Option(help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."),
+    ] = "mini",
+    scene: Annotated[str, typer.Option(help="What is flown over.")] = "suburb",
+    seed: Annotated[int, typer.Option(min=0, help="Of the scene and the noise.")] = 0,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1000x665",
+    fov: Annotated[float, typer.Option(help="Horizontal field of view, degrees.")] = 90.0,
+    sun: Annotated[
+        str, typer.Option(metavar="AZ,EL", help="Azimuth from north, elevation; degrees.")
+    ] = "140,48",
+    haze: Annotated[float, typer.Option(min=0.0, help="0 for clear air.")] = 0.2,
+    noise: Annotated[float, typer.Option(min=0.0, help="Of the sensor; 0 for none.")] = 1.0,
+    blur: Annotated[float, typer.Option(min=0.0, help="Of the lens, pixels.")] = 0.55,
+    motion: Annotated[float, typer.Option(min=0.0, help="Motion blur, pixels.")] = 0.0,
+    exposure_jitter: Annotated[
+        float, typer.Option(min=0.0, help="From image to image, stops.")
+    ] = 0.0,
+    interval: Annotated[
+        float, typer.Option(min=0.0, help="Seconds between images: cars drive on.")
+    ] = 0.0,
+    wind: Annotated[float, typer.Option(min=0.0, help="Moves crowns by so many metres.")] = 0.0,
+    form: Annotated[str, typer.Option("--format", help="png or jpeg.")] = "png",
+) -> None:
+    """Simulate a survey flight: images, poses, depth. Goes on where an earlier run broke off."""
+    from aerocues.simulation.flight import Settings
+    from aerocues.simulation.lighting import Weather
+    from aerocues.simulation.sensor import Sensor
+
+    width, height = _numbers(size, "x", "--size", "1000x665")
+    azimuth, elevation = _numbers(sun, ",", "--sun", "140,48")
+    settings = Settings(
+        scene=scene,
+        seed=seed,
+        width=int(width),
+        height=int(height),
+        fov=fov,
+        weather=Weather(azimuth, elevation, haze),
+        sensor=Sensor(noise, blur, motion, exposure_jitter=exposure_jitter),
+        interval=interval,
+        wind=wind,
+        form=form,
+    )
+    _fly(output, survey, settings)
+
+
+def _fly(folder: Path, spec: str, settings: Settings) -> None:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from aerocues.cli.console import count
+    from aerocues.simulation.flight import simulate as fly
+    from aerocues.simulation.planner import open_survey
+
+    survey = open_survey(spec, settings.camera)
+    with Progress(console=Console(stderr=True)) as bars:
+        task = bars.add_task(f"{settings.scene}, {survey.name}", total=len(survey.shots))
+        flown = fly(folder, survey, settings, lambda done, total: bars.update(task, completed=done))
+    kept = f", {flown.kept} kept" if flown.kept else ""
+    typer.echo(
+        f"{count(flown.rendered, 'image')} rendered{kept} in {folder}; "
+        f"measure them with: aerocues run simulated:{folder}"
+    )
+
+
+def _numbers(text: str, mark: str, option: str, example: str) -> tuple[float, float]:
+    try:
+        first, second = (float(part) for part in text.lower().split(mark))
+    except ValueError as error:
+        raise typer.BadParameter(f"{option} {text}: write it like {example}") from error
+    return first, second

@@ -1,0 +1,134 @@
+"""Simulated flights: images with exact poses, intrinsics and depth."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, TrueView
+from aerocues.datasets.fitting import fitted_size, scale_matrix
+from aerocues.datasets.folder import open_flight
+from aerocues.datasets.options import Options
+from aerocues.errors import DatasetError, ImageError
+
+_TRUTH = "truth"
+
+
+@dataclass(frozen=True)
+class DepthFile:
+    """Depth in a ``.npy`` file, at the size at which the images are read.
+
+    Parameters
+    ----------
+    path : Path
+    size : tuple of int
+        Width and height of the images.
+    """
+
+    path: Path
+    size: tuple[int, int]
+
+    def read(self) -> NDArray[np.float32]:
+        """Planar depth (H, W) float32 in metres; of shrunk images at the nearest true pixel.
+
+        Depth is not averaged: between a roof and the street beside it there is nothing.
+        """
+        try:
+            stored = np.load(self.path, allow_pickle=False)
+        except (OSError, ValueError) as error:
+            raise ImageError(
+                f"{self.path} holds no depth ({error}); simulate the flight again"
+            ) from error
+        width, height = self.size
+        if stored.shape == (height, width):
+            return np.asarray(stored, np.float32)
+        rows = _nearest(height, stored.shape[0])
+        columns = _nearest(width, stored.shape[1])
+        return np.asarray(stored[np.ix_(rows, columns)], np.float32)
+
+
+def _nearest(wanted: int, stored: int) -> NDArray[np.intp]:
+    centres = (np.arange(wanted) + 0.5) * stored / wanted - 0.5
+    return np.clip(np.floor(centres + 0.5), 0, stored - 1).astype(np.intp)
+
+
+def open_simulated(folder: Path, options: Options) -> Dataset:
+    """The images of a simulated flight, or of a folder inside one, with what is true of them.
+
+    Raises
+    ------
+    DatasetError
+        If there are fewer than two images, or the truth is missing.
+    """
+    root = _root(folder)
+    truth = root / _TRUTH
+    try:
+        settings = json.loads((truth / "camera.json").read_text("utf-8"))
+        camera = PinholeCamera(**settings["camera"])
+        with (truth / "poses.csv").open(encoding="utf-8", newline="") as file:
+            poses = {row["image"]: row for row in csv.DictReader(file)}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise DatasetError(
+            f"{truth} cannot be read ({error}); simulate the flight again"
+        ) from error
+    flight = open_flight(folder, options)
+    prefix = folder.resolve().relative_to(root.resolve())
+    fitted = scaled_camera(camera, options.max_width)
+    images = [
+        _with_truth(image, (prefix / image.name).as_posix(), poses, fitted, truth)
+        for image in flight.images
+    ]
+    return replace(flight, images=images)
+
+
+def _root(folder: Path) -> Path:
+    for parent in (folder.absolute(), *folder.absolute().parents):
+        if (parent / _TRUTH / "poses.csv").is_file():
+            return parent
+    raise DatasetError(
+        f"{folder} has no {_TRUTH}/poses.csv, nor has a folder above it; "
+        f"make a flight with: aerocues simulate -o {folder}"
+    )
+
+
+def scaled_camera(camera: PinholeCamera, max_width: int | None) -> PinholeCamera:
+    """The camera of images that were shrunk to `max_width`; the half pixel is scaled along."""
+    size = fitted_size((camera.width, camera.height), max_width)
+    scale = scale_matrix((camera.width, camera.height), size)
+    centre = scale @ [camera.centre_x, camera.centre_y, 1.0]
+    focal_x, focal_y = camera.focal_x * scale[0, 0], camera.focal_y * scale[1, 1]
+    return PinholeCamera(*size, float(focal_x), float(focal_y), float(centre[0]), float(centre[1]))
+
+
+def _with_truth(
+    image: Image, name: str, poses: Mapping[str, Any], camera: PinholeCamera, truth: Path
+) -> Image:
+    if name not in poses:
+        raise DatasetError(f"{truth / 'poses.csv'} lacks {name}; simulate the flight again")
+    row = poses[name]
+    centre = np.array([float(row[axis]) for axis in ("north", "east", "down")])
+    rotation = _rotation(*(float(row[angle]) for angle in ("pitch", "yaw", "roll")))
+    depth = DepthFile(
+        truth / "depth" / Path(name).with_suffix(".npy"), (camera.width, camera.height)
+    )
+    return replace(image, truth=TrueView(camera, rotation, centre, depth))
+
+
+def _rotation(pitch: float, yaw: float, roll: float) -> NDArray[np.float64]:
+    """(3, 3) from north, east, down to the camera: of Rz(yaw) Ry(pitch) Rx(roll), in degrees."""
+    (cp, cy, cr), (sp, sy, sr) = (
+        [function(math.radians(angle)) for angle in (pitch, yaw, roll)]
+        for function in (math.cos, math.sin)
+    )
+    ahead = [cy * cp, sy * cp, -sp]
+    right = [cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr]
+    below = [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
+    return np.array([right, below, ahead])

@@ -1,0 +1,76 @@
+"""The true poses of a flight in the forms that other programs read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import PinholeCamera
+from aerocues.simulation.camera import Pose
+
+NED_FROM_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+"""COLMAP's and the trajectory's world is east, north, up: viewers expect up to be up."""
+
+CSV_HEADER = "image,north,east,down,pitch,yaw,roll,time"
+
+
+def write_poses(
+    folder: Path,
+    names: Sequence[str],
+    poses: Sequence[Pose],
+    times: Sequence[float],
+    camera: PinholeCamera,
+) -> None:
+    """Write all forms into a folder.
+
+    ``poses.csv``: north, east, down in metres, degrees, seconds. ``trajectory.tum``: time,
+    position and quaternion (x, y, z, w) from camera to world. ``sparse/``: COLMAP's text model
+    without points.
+    """
+    sparse = folder / "sparse"
+    sparse.mkdir(parents=True, exist_ok=True)
+    rows = [
+        f"{name},{p.north!r},{p.east!r},{p.down!r},{p.pitch!r},{p.yaw!r},{p.roll!r},{time!r}"
+        for name, p, time in zip(names, poses, times, strict=True)
+    ]
+    _write(folder / "poses.csv", [CSV_HEADER, *rows])
+    _write(folder / "trajectory.tum", [_tum(p, t) for p, t in zip(poses, times, strict=True)])
+    _write(sparse / "cameras.txt", [_camera(camera)])
+    images = [_image(number, n, p) for number, (n, p) in enumerate(zip(names, poses, strict=True))]
+    _write(sparse / "images.txt", images)
+    _write(sparse / "points3D.txt", [])
+
+
+def _write(path: Path, lines: Sequence[str]) -> None:
+    path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+
+
+def _camera(camera: PinholeCamera) -> str:
+    # COLMAP's pixel centres lie at 0.5.
+    numbers = (camera.focal_x, camera.focal_y, camera.centre_x + 0.5, camera.centre_y + 0.5)
+    return f"1 PINHOLE {camera.width} {camera.height} " + " ".join(repr(n) for n in numbers)
+
+
+def _image(number: int, name: str, pose: Pose) -> str:
+    rotation = pose.rotation @ NED_FROM_ENU
+    x, y, z, w = _quaternion(rotation)
+    shift = -rotation @ (NED_FROM_ENU.T @ pose.centre)
+    numbers = " ".join(repr(float(part)) for part in (w, x, y, z, *shift))
+    return f"{number + 1} {numbers} 1 {name}\n"  # an empty line: no points
+
+
+def _tum(pose: Pose, time: float) -> str:
+    centre = NED_FROM_ENU.T @ pose.centre
+    turn = _quaternion((pose.rotation @ NED_FROM_ENU).T)
+    return " ".join(f"{float(part):.9f}" for part in (time, *centre, *turn))
+
+
+def _quaternion(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """x, y, z, w."""
+    from scipy.spatial.transform import Rotation
+
+    turn: NDArray[np.float64] = Rotation.from_matrix(rotation).as_quat()
+    return turn

@@ -1,0 +1,191 @@
+"""Simulated flights: images with ground truth beside them, in one folder that can be gone on with.
+
+::
+
+    DIR/Layer1/pitch-90_yaw0/000_z-60_y-160_x-160.png    images
+    DIR/truth/poses.csv, trajectory.tum, sparse/         poses
+    DIR/truth/camera.json                                intrinsics and settings
+    DIR/truth/depth/Layer1/.../000_z-60_y-160_x-160.npy  depth, float32 metres
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import PinholeCamera
+from aerocues.errors import SimulationError
+from aerocues.simulation.camera import Pose, pinhole
+from aerocues.simulation.exports import write_poses
+from aerocues.simulation.georeference import geodetic
+from aerocues.simulation.lighting import Weather
+from aerocues.simulation.metadata import write_image
+from aerocues.simulation.rendering import Stage, render
+from aerocues.simulation.scenes import HALF, build_scene, stage
+from aerocues.simulation.sensor import Sensor, develop
+from aerocues.simulation.surveys import Shot, Survey
+
+RENDERER_VERSION = "1"
+"""Part of the keys of frames; raised when pictures come to differ for the same settings."""
+
+TRUTH = "truth"
+SUFFIXES = {"png": ".png", "jpeg": ".jpg"}
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is flown over, and with what.
+
+    Parameters
+    ----------
+    scene : str
+        Name of a row of `scenes.SCENES`.
+    seed : int
+        Of the scene and of the sensor's noise.
+    width, height : int
+        Pixels.
+    fov : float
+        Horizontal field of view in degrees.
+    weather : Weather
+    sensor : Sensor
+    interval : float
+        Seconds from image to image: cars drive on. 0: all are of one moment.
+    wind : float
+        Metres by which the wind moves crowns.
+    form : str
+        ``png`` or ``jpeg``.
+    """
+
+    scene: str = "suburb"
+    seed: int = 0
+    width: int = 1000
+    height: int = 665
+    fov: float = 90.0
+    weather: Weather = field(default_factory=Weather)
+    sensor: Sensor = field(default_factory=Sensor)
+    interval: float = 0.0
+    wind: float = 0.0
+    form: str = "png"
+
+    def __post_init__(self) -> None:
+        if self.form not in SUFFIXES:
+            raise SimulationError(f"format '{self.form}' is unknown; use {', '.join(SUFFIXES)}")
+        if min(self.width, self.height) < 16 or not 1.0 <= self.fov <= 150.0:
+            raise SimulationError("images need 16 pixels a side and a field of view of 1 to 150")
+
+    @property
+    def camera(self) -> PinholeCamera:
+        """The camera of all images."""
+        return pinhole(self.width, self.height, self.fov)
+
+
+@dataclass(frozen=True)
+class Flown:
+    """How many images were rendered, and how many were there already."""
+
+    rendered: int
+    kept: int
+
+
+def simulate(
+    folder: Path, survey: Survey, settings: Settings, progress: Progress | None = None
+) -> Flown:
+    """Fly a survey; images that are there, made with the same settings, are kept.
+
+    Parameters
+    ----------
+    folder : Path
+        Is made where it is missing.
+    survey : Survey
+    settings : Settings
+    progress : callable, optional
+        Called with the number of finished images and of all.
+    """
+    suffix = SUFFIXES[settings.form]
+    truth = folder / TRUTH
+    truth.mkdir(parents=True, exist_ok=True)
+    times = [index * settings.interval for index in range(len(survey.shots))]
+    names = [f"{shot.name}{suffix}" for shot in survey.shots]
+    write_poses(truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
+    _write_json(truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
+    half = _half(survey, settings.camera)
+    keys_path = truth / "keys.json"
+    keys = json.loads(keys_path.read_text("utf-8")) if keys_path.is_file() else {}
+    studio, rendered = _Studio(settings, half), 0
+    for done, (shot, time) in enumerate(zip(survey.shots, times, strict=True)):
+        key = _key(settings, shot, time, half)
+        image, depth = folder / names[done], truth / "depth" / f"{shot.name}.npy"
+        if keys.get(names[done]) != key or not (image.is_file() and depth.is_file()):
+            studio.take(shot.pose, time, done, image, depth)
+            keys[names[done]] = key
+            _write_json(keys_path, keys)
+            rendered += 1
+        if progress is not None:
+            progress(done + 1, len(names))
+    return Flown(rendered, len(names) - rendered)
+
+
+class _Studio:
+    """The scene, built when the first image is taken, and its light at the moment of the last."""
+
+    def __init__(self, settings: Settings, half: float) -> None:
+        self._settings, self._half = settings, half
+        self._stage: Stage | None = None
+        self._time = 0.0
+
+    def take(self, pose: Pose, time: float, number: int, image: Path, depth: Path) -> None:
+        settings, camera = self._settings, self._settings.camera
+        rendering = render(self._at(time), camera, pose)
+        rng = np.random.default_rng([settings.seed, number])
+        pixels = develop(rendering.radiance, settings.sensor, rng)
+        image.parent.mkdir(parents=True, exist_ok=True)
+        depth.parent.mkdir(parents=True, exist_ok=True)
+        _write_depth(depth, rendering.depth)
+        write_image(image, pixels, camera, pose, geodetic(pose.north, pose.east, pose.down))
+
+    def _at(self, time: float) -> Stage:
+        if self._stage is None or time != self._time:
+            settings = self._settings
+            if self._stage is None:
+                self._scene = build_scene(settings.scene, settings.seed, self._half)
+            self._stage = stage(self._scene, settings.weather, time, settings.wind)
+            self._time = time
+        return self._stage
+
+
+def _half(survey: Survey, camera: PinholeCamera) -> float:
+    """How far from the origin the survey sees details, but not farther than `scenes.HALF`."""
+    diagonal = float(np.hypot(camera.width / camera.focal_x, camera.height / camera.focal_y)) / 2
+    reach = 0.0
+    for shot in survey.shots:
+        pose = shot.pose
+        tilt = min(abs(pose.pitch + 90.0) + np.degrees(np.arctan(diagonal)), 72.0)
+        seen = -pose.down * float(np.tan(np.radians(tilt)))
+        reach = max(reach, max(abs(pose.north), abs(pose.east)) + seen)
+    return float(min(np.ceil((reach + 10.0) / 10.0) * 10.0, HALF))
+
+
+def _key(settings: Settings, shot: Shot, time: float, half: float) -> str:
+    facts = {"settings": asdict(settings), "shot": asdict(shot), "time": time, "half": half}
+    text = json.dumps([RENDERER_VERSION, facts], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _write_json(path: Path, content: object) -> None:
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    part.replace(path)
+
+
+def _write_depth(path: Path, depth: NDArray[np.float32]) -> None:
+    part = path.with_suffix(".part")
+    with part.open("wb") as file:
+        np.save(file, depth)
+    part.replace(path)

@@ -1,0 +1,131 @@
+"""Surveys from the terms of a mission: area, altitude or ground sampling distance, overlaps."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from aerocues.datasets.dataset import PinholeCamera
+from aerocues.errors import SimulationError
+from aerocues.simulation.camera import Pose
+from aerocues.simulation.surveys import SURVEYS, Shot, Survey, survey_called
+
+PATTERNS = ("nadir", "oblique", "double", "orbit")
+
+
+@dataclass(frozen=True)
+class Mission:
+    """What is to be flown; the area is centred at the origin.
+
+    Parameters
+    ----------
+    pattern : str
+        ``nadir`` or ``oblique``: parallel lines, north and back; ``double``: the same and lines
+        across; ``orbit``: a circle around the area that looks at its centre.
+    north, east : float
+        Extent of the area in metres.
+    altitude : float or None
+        Metres above the origin.
+    gsd : float or None
+        Centimetres on the ground in a pixel, looking straight down, in place of the altitude.
+    front, side : float
+        Overlap of consecutive images and of neighbouring lines, 0 to below 1.
+    pitch : float
+        Of the camera in ``oblique`` and ``orbit``, degrees.
+    """
+
+    pattern: str = "nadir"
+    north: float = 120.0
+    east: float = 120.0
+    altitude: float | None = None
+    gsd: float | None = None
+    front: float = 0.8
+    side: float = 0.7
+    pitch: float = -60.0
+
+    def __post_init__(self) -> None:
+        if self.pattern not in PATTERNS:
+            raise SimulationError(f"pattern '{self.pattern}' is none of {', '.join(PATTERNS)}")
+        if (self.altitude is None) == (self.gsd is None):
+            raise SimulationError("a mission needs an altitude or a gsd, and not both; give one")
+        if not (0 <= self.front < 1 and 0 <= self.side < 1):
+            raise SimulationError("overlaps are parts of an image; give 0 or more, less than 1")
+        if min(self.north, self.east, self.altitude or 1.0, self.gsd or 1.0) <= 0:
+            raise SimulationError("area, altitude and gsd are lengths; give more than 0")
+
+    def height(self, camera: PinholeCamera) -> float:
+        """Metres above the origin."""
+        if self.altitude is not None:
+            return self.altitude
+        return round((self.gsd or 0.0) / 100 * camera.focal_x, 6)
+
+
+def plan(mission: Mission, camera: PinholeCamera, name: str = "mission") -> Survey:
+    """The images of a mission."""
+    height = mission.height(camera)
+    ahead = camera.height / camera.focal_y * height * (1 - mission.front)
+    beside = camera.width / camera.focal_x * height * (1 - mission.side)
+    if mission.pattern == "orbit":
+        poses = list(_orbit(mission, height, ahead))
+    else:
+        pitch = mission.pitch if mission.pattern == "oblique" else -90.0
+        poses = list(_lines(mission, height, (ahead, beside), pitch))
+        if mission.pattern == "double":
+            turned = Mission(north=mission.east, east=mission.north, altitude=height)
+            poses += [
+                Pose(-pose.east, pose.north, pose.down, pose.pitch, (pose.yaw + 90.0) % 360.0)
+                for pose in _lines(turned, height, (ahead, beside), pitch)
+            ]
+    shots = tuple(Shot(f"{name}/{index:04d}", pose) for index, pose in enumerate(poses))
+    return Survey(name, shots)
+
+
+def _spread(extent: float, step: float) -> list[float]:
+    """Positions at most `step` apart that reach from one end of the extent to the other."""
+    count = math.ceil(extent / step - 1e-9) + 1
+    return [float(at) for at in np.linspace(-extent / 2, extent / 2, count)]
+
+
+def _lines(
+    mission: Mission, height: float, steps: tuple[float, float], pitch: float
+) -> Iterator[Pose]:
+    nodes = _spread(mission.north, steps[0])
+    for line, east in enumerate(_spread(mission.east, steps[1])):
+        for north in nodes if line % 2 == 0 else reversed(nodes):
+            yield Pose(north, east, -height, pitch, 180.0 * (line % 2))
+
+
+def _orbit(mission: Mission, height: float, ahead: float) -> Iterator[Pose]:
+    radius = math.hypot(mission.north, mission.east) / 2
+    count = max(math.ceil(2 * math.pi * radius / ahead), 8)
+    for number in range(count):
+        angle = 360.0 * number / count
+        north, east = (radius * part(math.radians(angle)) for part in (math.cos, math.sin))
+        yield Pose(north, east, -height, mission.pitch, (angle + 180.0) % 360.0)
+
+
+def open_survey(spec: str, camera: PinholeCamera) -> Survey:
+    """A survey by its name, or from a JSON file with the fields of `Mission`.
+
+    Raises
+    ------
+    SimulationError
+        If it is neither, or the file's content makes no sense.
+    """
+    if spec.lower() in SURVEYS or not Path(spec).is_file():
+        return survey_called(spec)
+    known = {field.name for field in fields(Mission)}
+    try:
+        terms = json.loads(Path(spec).read_text(encoding="utf-8"))
+        unknown = sorted(set(terms) - known)
+        mission = Mission(**terms) if not unknown else None
+    except (ValueError, TypeError) as error:
+        raise SimulationError(f"{spec} is no mission ({error}); write JSON with {known}") from error
+    if mission is None:
+        raise SimulationError(f"{spec}: {', '.join(unknown)} is unknown; use {', '.join(known)}")
+    return plan(mission, camera, Path(spec).stem)

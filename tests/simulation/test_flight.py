@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as PillowImage
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.dataset import TrueView
+from aerocues.datasets.gps import east_north_up, read_gps
+from aerocues.simulation.camera import Pose, pinhole
+from aerocues.simulation.flight import Flown, Settings, simulate
+from aerocues.simulation.georeference import ORIGIN, geodetic
+from aerocues.simulation.metadata import gimbal_angles, write_image
+from aerocues.simulation.surveys import Shot, Survey
+
+SURVEY = Survey(
+    "short",
+    (
+        Shot("Layer1/000_a", Pose(0, 0, -40, -90, 0)),
+        Shot("Layer1/001_b", Pose(8, 0, -40, -80, 10)),
+    ),
+)
+SETTINGS = Settings(width=120, height=80)
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("flight")
+    assert simulate(folder, SURVEY, SETTINGS) == Flown(2, 0)
+    return folder
+
+
+def view_of(folder: Path, number: int, max_width: int | None = None) -> TrueView:
+    truth = open_dataset(f"simulated:{folder}", max_width=max_width).images[number].truth
+    assert truth is not None
+    return truth
+
+
+def test_what_is_there_is_kept(flight: Path) -> None:
+    first = flight / "Layer1/000_a.png"
+    before = first.read_bytes()
+    assert simulate(flight, SURVEY, SETTINGS) == Flown(0, 2)
+    first.unlink()
+    assert simulate(flight, SURVEY, SETTINGS) == Flown(1, 1)
+    assert first.read_bytes() == before
+
+
+def test_the_dataset_knows_the_truth(flight: Path) -> None:
+    dataset = open_dataset(f"simulated:{flight}")
+    assert [(pair.image_1, pair.image_2) for pair in dataset.pairs] == [
+        ("Layer1/000_a.png", "Layer1/001_b.png")
+    ]
+    for number, shot in enumerate(SURVEY.shots):
+        view = view_of(flight, number)
+        assert view.rotation == pytest.approx(shot.pose.rotation, abs=1e-12)
+        assert view.centre == pytest.approx(shot.pose.centre)
+        assert view.camera == pinhole(120, 80, 90.0)
+        assert view.depth is not None
+        assert view.depth.read().shape == (80, 120)
+    assert len(open_dataset(f"simulated:{flight / 'Layer1'}").images) == 2
+
+
+def test_truth_is_scaled_with_the_images(flight: Path) -> None:
+    full, half = view_of(flight, 0), view_of(flight, 0, max_width=60)
+    assert (half.camera.width, half.camera.height) == (60, 40)
+    assert half.camera.centre_x == pytest.approx((full.camera.centre_x + 0.5) / 2 - 0.5)
+    assert full.depth is not None
+    assert half.depth is not None
+    assert half.depth.read().shape == (40, 60)
+    assert np.median(half.depth.read()) == pytest.approx(np.median(full.depth.read()), rel=0.02)
+
+
+def test_colmap_reads_the_poses(flight: Path) -> None:
+    import pycolmap
+
+    model = pycolmap.Reconstruction(str(flight / "truth/sparse"))
+    assert model.num_images() == 2
+    for image in model.images.values():
+        number = 0 if image.name.endswith("000_a.png") else 1
+        view = view_of(flight, number)
+        camera, depth = view.camera, view.depth
+        assert depth is not None
+        values = depth.read()
+        for row, column in ((10, 15), (40, 60), (70, 110)):
+            ray = np.array(
+                [
+                    (column - camera.centre_x) / camera.focal_x,
+                    (row - camera.centre_y) / camera.focal_y,
+                    1.0,
+                ]
+            )
+            north, east, down = view.rotation.T @ ray * values[row, column] + view.centre
+            seen = image.project_point(np.array([east, north, -down]))
+            assert seen == pytest.approx((column + 0.5, row + 0.5), abs=0.01)
+
+
+def test_the_trajectory_has_the_centres(flight: Path) -> None:
+    rows = np.loadtxt(flight / "truth/trajectory.tum")
+    assert rows[:, 1:4] == pytest.approx(np.array([(0, 0, 40), (0, 8, 40)]))
+    assert np.linalg.norm(rows[:, 4:], axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".jpg"])
+def test_positions_and_angles_are_in_the_image(tmp_path: Path, suffix: str) -> None:
+    pose = Pose(120.0, -75.0, -60.0, -120.0, -90.0)
+    path = tmp_path / f"a{suffix}"
+    gps = geodetic(pose.north, pose.east, pose.down)
+    pixels = np.zeros((80, 120, 3), np.uint8)
+    write_image(path, pixels, pinhole(120, 80, 90.0), pose, gps)
+    found = read_gps(path)
+    assert found is not None
+    assert east_north_up([found], ORIGIN)[0] == pytest.approx((-75, 120, 60), abs=2e-3)
+    with PillowImage.open(path) as image:
+        packet = image.info["xmp"]
+    text = packet.decode() if isinstance(packet, bytes) else packet
+    angles = [
+        float(re.findall(rf'Gimbal{axis}Degree="([^"]+)"', text)[0])
+        for axis in ("Pitch", "Yaw", "Roll")
+    ]
+    assert angles == pytest.approx([-60, 90, 180])
+    assert Pose(0, 0, 0, *angles).rotation == pytest.approx(pose.rotation, abs=1e-12)
+    assert not list(tmp_path.glob(".*"))
+
+
+@pytest.mark.parametrize("pitch", [-120.0, -90.0, -60.0, 10.0])
+def test_folded_angles_mean_the_same(pitch: float) -> None:
+    pose = Pose(0, 0, 0, pitch, 200.0, 5.0)
+    folded = gimbal_angles(pose)
+    assert -90 <= folded[0] <= 90
+    assert Pose(0, 0, 0, *folded).rotation == pytest.approx(pose.rotation, abs=1e-12)
