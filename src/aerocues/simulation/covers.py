@@ -22,9 +22,9 @@ def _spots(x: float, y: float, side: float, share: float, footprint: float, seed
     i, j = math.floor(x / side), math.floor(y / side)
     if hashed(i, j, seed) > share:
         return 0.0
-    u = x / side - i - 0.3 - 0.4 * hashed(i, j, seed + 1)
-    v = y / side - j - 0.3 - 0.4 * hashed(i, j, seed + 2)
-    radius = 0.12 + 0.18 * hashed(i, j, seed + 3)
+    u = x / side - i - 0.22 - 0.56 * hashed(i, j, seed + 1)
+    v = y / side - j - 0.22 - 0.56 * hashed(i, j, seed + 2)
+    radius = 0.07 + 0.15 * hashed(i, j, seed + 3)
     return max(1.0 - (u * u + v * v) / (radius * radius), 0.0) * resolved(side, footprint)
 
 
@@ -60,7 +60,7 @@ def _asphalt(x: float, y: float, footprint: float, base: float) -> Rgb:
     # Cracks lie where a wandering noise passes through zero.
     crack = abs(fractal_noise(x, y, 9.0, 0.5, 0.55, footprint, 221))
     shade -= 0.42 * max(1.0 - crack / 0.025, 0.0) * resolved(0.35, footprint)
-    shade -= 0.45 * _spots(x, y, 2.7, 0.16, footprint, 231)
+    shade -= 0.45 * _spots(x, y, 2.7, 0.12, footprint, 231)
     shade += 0.22 * _spots(x, y, 1.3, 0.10, footprint, 241)
     return scaled((base, 0.985 * base, 0.96 * base), shade)
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from aerocues.errors import SimulationError
+from aerocues.simulation.fields import build_fields
+from aerocues.simulation.industrial import build_industrial
 from aerocues.simulation.lighting import Weather, bake, ground_centres
 from aerocues.simulation.rendering import Stage
 from aerocues.simulation.scene import Scene
@@ -28,6 +30,8 @@ class SceneKind:
 
 SCENES: tuple[SceneKind, ...] = (
     SceneKind("suburb", "houses, gardens, trees, cars, streets, parks: rich", build_suburb),
+    SceneKind("fields", "rows of crops, stubble, hedgerows, a farm: repetitive", build_fields),
+    SceneKind("industrial", "halls, yards, containers, car parks: plain", build_industrial),
 )
 _KINDS = {kind.name: kind for kind in SCENES}
 

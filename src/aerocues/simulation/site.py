@@ -111,7 +111,7 @@ class Site:
             return (along, at + offset) if way else (at - offset, along)
 
         others = self.grid.rows if way else self.grid.columns
-        if min(abs(other - along) for other in others) < RESERVE + 4.0:
+        if any(abs(other - along) < RESERVE + 4.0 for other in others):
             return
         verge = self.frame(*on_grid(side * 0.5 * (CARRIAGEWAY + VERGE_END)), direction)
         draw = self.rng.random()

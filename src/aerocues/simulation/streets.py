@@ -111,7 +111,7 @@ def _paint_markings(
     for way, at in streets:
         crossings = np.array(grid.rows if way else grid.columns)
         for start in np.arange(-grid.half, grid.half, 6.0):
-            if np.abs(crossings - start - 1.5).min() > CARRIAGEWAY + 8.0:
+            if np.abs(crossings - start - 1.5).min(initial=np.inf) > CARRIAGEWAY + 8.0:
                 painter.band(grid.line(bend, way, at, 0.0, (start, start + 3)), 0.16, Cover.MARKING)
         for crossing in crossings:
             for side in (-1.0, 1.0):

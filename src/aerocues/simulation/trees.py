@@ -176,7 +176,7 @@ def _leaves(
     owner = np.repeat(np.arange(len(radii)), counts)
     outward = rng.standard_normal((len(owner), 3))
     outward /= np.linalg.norm(outward, axis=1, keepdims=True)
-    reach = radii[owner, None] * rng.uniform(0.80, 1.14, (len(owner), 1))
+    reach = radii[owner, None] * rng.uniform(0.88, 1.08, (len(owner), 1))
     middle = centres[owner] + outward * reach
     gap = np.linalg.norm(middle[:, None] - centres[None], axis=2) - 0.78 * radii
     gap[np.arange(len(owner)), owner] = 1.0
