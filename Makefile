@@ -9,7 +9,9 @@ SUPPORTED := import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13)
 FIND_PYTHON = for name in python3 python3.13 python3.12 python3.11; do \
 	if "$$name" -c '$(SUPPORTED)' 2>/dev/null; then echo "$$name"; break; fi; done
 
+DEMO_FLIGHT := demo-flight
 DEMO_RESULTS := demo-results
+DEMO_MODELS := demo-models
 DEMO_REPORT := demo-report.html
 DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZE-L2-BF,ORB-ORB-HAM-*,$(\
 	)ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,AGAST-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,$(\
@@ -42,8 +44,10 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	@touch $@
 
-demo: setup ## measure, rank and report a choice of combinations on the built-in images (under 3 minutes)
-	$(BIN)/aerocues run synthetic --max-width 700 -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (under 3 minutes)
+	$(BIN)/aerocues simulate --survey mini --size 700x466 -o $(DEMO_FLIGHT)
+	$(BIN)/aerocues run simulated:$(DEMO_FLIGHT) -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+	$(BIN)/aerocues reconstruct simulated:$(DEMO_FLIGHT) -o $(DEMO_MODELS) --from $(DEMO_RESULTS) --top 3
 	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)
 
 test: setup ## the fast tests
@@ -79,5 +83,5 @@ lock: setup ## pin the newest allowed versions in requirements.lock (needs uv)
 		--generate-hashes --no-emit-index-url --no-header --upgrade --output-file requirements.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(DEMO_RESULTS) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) .coverage .coverage.* build dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -246,7 +246,8 @@ def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
 def test_the_demonstration_ends_in_a_table_and_a_report(tmp_path: Path) -> None:
-    places = [f"DEMO_RESULTS={tmp_path / 'results'}", f"DEMO_REPORT={tmp_path / 'report.html'}"]
+    names = {"FLIGHT": "flight", "RESULTS": "results", "MODELS": "models", "REPORT": "report.html"}
+    places = [f"DEMO_{name}={tmp_path / path}" for name, path in names.items()]
     done = subprocess.run(
         ["make", "--silent", "demo", *places],
         cwd=REPOSITORY,
