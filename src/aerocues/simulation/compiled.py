@@ -15,6 +15,9 @@ def compiled(function: _Function) -> _Function:
 
     Without fast mathematics: the same scene must give the same bytes everywhere. Kernels release
     the interpreter's lock and use one thread.
+
+    Numba looks for changes in the file of a function only, not in those of the functions that it
+    calls: after changing a kernel that another file calls, remove this folder's ``__pycache__``.
     """
     compile_it = numba.njit(cache=True, nogil=True, error_model="numpy")
     return cast("_Function", compile_it(function))

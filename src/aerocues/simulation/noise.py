@@ -34,8 +34,8 @@ def value_noise(x: float, y: float, seed: int) -> float:
 
 @compiled
 def resolved(wavelength: float, footprint: float) -> float:
-    """How much of a structure a pixel can show: 0 below its footprint, 1 from three times it."""
-    return min(max(0.5 * (wavelength / footprint - 1.0), 0.0), 1.0)
+    """How much of a structure a pixel can show: 0 up to 1.5 footprints, 1 from 4."""
+    return min(max(0.4 * (wavelength / footprint - 1.5), 0.0), 1.0)
 
 
 @compiled
