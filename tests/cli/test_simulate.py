@@ -8,6 +8,7 @@ from aerocues.cli.program import BAD_INPUT, exit_code
 from aerocues.datasets.catalog import open_dataset
 
 
+@pytest.mark.slow
 def test_a_mini_flight_and_its_continuation(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
