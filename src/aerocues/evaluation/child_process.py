@@ -179,9 +179,18 @@ class ChildProcess:
         text = self._errors.read().decode(errors="replace")
         return " ".join(text.split())[-LAST_WORDS:]
 
-    def stop(self) -> None:
-        """End the process at once; nothing that it holds is worth waiting for."""
+    def stop(self, patience: float = 0.0) -> None:
+        """End the process: at once, or where it has nothing left to do, by itself.
+
+        Parameters
+        ----------
+        patience : float
+            Seconds that it may take to end by itself.
+        """
         self.pipe.close()
+        if patience:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)
         self._process.kill()
         self._process.wait()
         self._heartbeat.close()

@@ -16,6 +16,7 @@ from aerocues.reconstruction.images import Prepared
 from aerocues.reconstruction.scene import Scene
 
 POLL_SECONDS = 0.2
+SECONDS_TO_END = 5.0
 Doing = tuple[StageCall | None, float]
 Watch = Callable[[Sequence[Doing]], None]
 Group = collections.deque[Combination]
@@ -77,8 +78,10 @@ def prepare_images(
                 raise AerocuesError(f"{image}: {found.message}; take it out of the folder")
             prepared.append(found)
             progress(len(prepared), len(images))
-    finally:
+        child.stop(SECONDS_TO_END)
+    except BaseException:
         child.stop()
+        raise
     return prepared
 
 
@@ -127,7 +130,7 @@ def run_reconstructions(
                     found = lane.child.receive()
                 elif (found := lane.child.overrun(limits.seconds)) is None:
                     continue
-                lane.child.stop()
+                lane.child.stop(0.0 if isinstance(found, Loss) else SECONDS_TO_END)
                 lanes.remove(lane)
                 if lane.group:
                     queue.appendleft(lane.group)
