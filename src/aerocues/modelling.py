@@ -67,7 +67,7 @@ def reconstruct(
         raise ReconstructionError(
             "no combinations: name some with --combinations, or results with --from"
         )
-    scene = open_scene(dataset) if isinstance(dataset, str) else dataset
+    scene = _as_measured(dataset, results) if isinstance(dataset, str) else dataset
     store = open_results(results, scene) if results is not None else None
     if combinations is None:
         assert results is not None
@@ -79,6 +79,20 @@ def reconstruct(
         options or ReconstructionOptions(),
         observer or ReconstructionObserver(),
         store,
+    )
+
+
+def _as_measured(spec: str, results: str | Path | None) -> Dataset:
+    """The scene, read as results of it were measured."""
+    scene = open_scene(spec)
+    if results is None:
+        return scene
+    known = settings_of_results(results, scene.name)
+    width = known.get("max_width", "full")
+    return open_scene(
+        spec,
+        max_width=None if width == "full" else int(width),
+        equalize=known.get("equalize", "none"),
     )
 
 

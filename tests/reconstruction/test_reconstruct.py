@@ -206,3 +206,72 @@ def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> 
         aerocues.reconstruct(landscape, empty, SIFT)
     with pytest.raises(StoreError, match=r"no folder of models"):
         Models(empty)
+
+
+def test_a_failure_leaves_nothing_of_an_earlier_model(
+    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(models.folder, copy)
+    protocol = replace(quick.protocol, max_keypoints=999)
+    options = replace(quick, protocol=protocol, time_limit=0.3)
+    failed = aerocues.reconstruct(landscape, copy, SIFT, options=options)
+    row = row_of(failed, SIFT)
+    assert row["status"] == "timeout"
+    assert (row["reference"], row["cloud_distance_rms"]) == (None, None)
+    seen = Counting()
+    aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    assert seen.present == 0
+    assert seen.rows[0]["points_3d"] == row_of(models, SIFT)["points_3d"]
+
+
+def test_files_that_are_gone_are_made_again(
+    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(models.folder, copy)
+    (copy / SIFT / "cloud.npz").write_bytes(b"half")
+    seen = Counting()
+    again = aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    assert len(seen.rows) == 1
+    assert again.cloud(SIFT) is not None
+
+
+def test_other_truth_or_other_names_are_another_scene(
+    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+) -> None:
+    moved = []
+    for number, image in enumerate(landscape.images):
+        assert image.truth is not None
+        centre = image.truth.centre + np.array([60.0 * (-1) ** number, 0, 0])
+        moved.append(replace(image, truth=replace(image.truth, centre=centre)))
+    copy = tmp_path / "moved"
+    shutil.copytree(models.folder, copy)
+    made = aerocues.reconstruct(replace(landscape, images=moved), copy, SIFT, options=quick)
+    row = row_of(made, SIFT)
+    assert row["status"] == "misplaced"
+    assert row["matching_seconds"] == row_of(models, SIFT)["matching_seconds"]
+
+    names = {image.name: f"new_{image.name}" for image in landscape.images}
+    renamed = replace(
+        landscape,
+        images=[replace(image, name=names[image.name]) for image in landscape.images],
+        pairs=[
+            replace(pair, image_1=names[pair.image_1], image_2=names[pair.image_2])
+            for pair in landscape.pairs
+        ],
+    )
+    again = aerocues.reconstruct(renamed, copy, SIFT, options=quick)
+    assert row_of(again, SIFT)["status"] == "ok"
+
+
+def test_a_pair_in_both_orders_is_matched_once(
+    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+) -> None:
+    turned = [
+        replace(pair, index=100 + pair.index, image_1=pair.image_2, image_2=pair.image_1)
+        for pair in landscape.pairs
+    ]
+    twice = replace(landscape, pairs=[*landscape.pairs, *turned])
+    row = row_of(aerocues.reconstruct(twice, empty, SIFT, options=quick), SIFT)
+    assert (row["status"], row["pairs"]) == ("ok", 36)

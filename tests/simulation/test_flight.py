@@ -55,8 +55,11 @@ def test_the_dataset_knows_the_truth(flight: Path) -> None:
     ]
     for number, shot in enumerate(SURVEY.shots):
         view = view_of(flight, number)
-        assert view.rotation == pytest.approx(shot.pose.rotation, abs=1e-12)
-        assert view.centre == pytest.approx(shot.pose.centre)
+        to_east_north_up = np.array([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+        rotation = shot.pose.rotation @ to_east_north_up.T
+        assert view.rotation == pytest.approx(rotation, abs=1e-12)
+        north, east, down = shot.pose.centre
+        assert view.centre == pytest.approx((east, north, -down))
         assert view.camera == pinhole(120, 80, 90.0)
         assert view.depth is not None
         assert view.depth.read().shape == (80, 120)
@@ -92,8 +95,8 @@ def test_colmap_reads_the_poses(flight: Path) -> None:
                     1.0,
                 ]
             )
-            north, east, down = view.rotation.T @ ray * values[row, column] + view.centre
-            seen = image.project_point(np.array([east, north, -down]))
+            place = view.rotation.T @ ray * values[row, column] + view.centre
+            seen = image.project_point(place)
             assert seen == pytest.approx((column + 0.5, row + 0.5), abs=0.01)
 
 

@@ -90,7 +90,7 @@ class TrueView:
     ----------
     camera : PinholeCamera
     rotation : (3, 3) float64
-        From the world to the camera: x right, y down, z forward.
+        From the world (x east, y north, z up) to the camera: x right, y down, z forward.
     centre : (3,) float64
         Centre of the camera in the world, metres.
     depth : DepthSource or None

@@ -20,6 +20,8 @@ from aerocues.datasets.options import Options
 from aerocues.errors import DatasetError, ImageError
 
 _TRUTH = "truth"
+# From north, east, down to east, north, up, as GPS positions are, too.
+_UPRIGHT = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 
 @dataclass(frozen=True)
@@ -114,8 +116,8 @@ def _with_truth(
     if name not in poses:
         raise DatasetError(f"{truth / 'poses.csv'} lacks {name}; simulate the flight again")
     row = poses[name]
-    centre = np.array([float(row[axis]) for axis in ("north", "east", "down")])
-    rotation = _rotation(*(float(row[angle]) for angle in ("pitch", "yaw", "roll")))
+    centre = _UPRIGHT @ [float(row[axis]) for axis in ("north", "east", "down")]
+    rotation = _rotation(*(float(row[angle]) for angle in ("pitch", "yaw", "roll"))) @ _UPRIGHT.T
     depth = DepthFile(
         truth / "depth" / Path(name).with_suffix(".npy"), (camera.width, camera.height)
     )

@@ -14,15 +14,15 @@ from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES
 from aerocues.evaluation.reconstructions import reconstruction_table
 from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
 from aerocues.methods.combination import Combination
+from aerocues.reconstruction.exports import MODEL
 from aerocues.reconstruction.images import LIST
-from aerocues.reconstruction.one_model import CLOUD, PICTURE
+from aerocues.reconstruction.one_model import CLOUD, OUTCOME, PICTURE
 from aerocues.reconstruction.scene import FEATURES, IMAGES
 
 if TYPE_CHECKING:
     import polars as pl
 
 SETTINGS = "reconstruction.json"
-OUTCOME = "outcome.json"
 TABLE, TABLE_TEXT = "reconstructions.parquet", "reconstructions.csv"
 RETRIED = tuple(status.name for status in RECONSTRUCTION_STATUSES if status.retried)
 
@@ -109,6 +109,15 @@ def read_outcome(folder: Path) -> Row | None:
     except (OSError, ValueError):
         return None
     return found if isinstance(found, dict) else None
+
+
+def has_files(place: Path) -> bool:
+    """Whether the model and the cloud of a reconstruction are there, and the cloud is whole."""
+    try:
+        read_cloud((place / CLOUD).read_bytes(), place / CLOUD)
+    except (OSError, StoreError):
+        return False
+    return (place / MODEL / "0").is_dir()
 
 
 def write_outcome(folder: Path, row: Row) -> None:

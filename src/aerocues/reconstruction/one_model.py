@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -20,7 +21,14 @@ from aerocues.reconstruction.diagnosis import (
     without_links,
     without_model,
 )
-from aerocues.reconstruction.exports import export_model, undistort
+from aerocues.reconstruction.exports import (
+    MODEL,
+    PLY,
+    TEXT,
+    UNDISTORTED,
+    export_model,
+    undistort,
+)
 from aerocues.reconstruction.mapping import map_scene
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.matching import Announce, SceneMatcher, call_of
@@ -40,6 +48,8 @@ MATCHES = "matches.npz"
 DATABASE = "database.db"
 CLOUD = "cloud.npz"
 PICTURE = "picture.png"
+OUTCOME = "outcome.json"
+MAPPING = "mapping"
 
 
 class ModelMaker:
@@ -59,10 +69,12 @@ class ModelMaker:
         self._announce = announce
         self._folder = scene.place(combination)
         self._row: Row = {}
+        self._stage = "matching"
 
     def make(self) -> Row:
         """The row of the reconstruction, with its status, as far as it came."""
         self._folder.mkdir(parents=True, exist_ok=True)
+        self._remove_earlier()
         self._row.update(
             images=len(self._scene.dataset.images), pairs=len(self._scene.dataset.pairs)
         )
@@ -70,10 +82,26 @@ class ModelMaker:
             outcome = self._reconstruct()
         except StageError as failure:
             outcome = Outcome(failure.status, failure.message)
+        except (RuntimeError, ValueError, KeyError, IndexError) as error:  # what COLMAP raises
+            text = " ".join(str(error).split())
+            outcome = Outcome("error", f"{self._stage}: {type(error).__name__}: {text}")
         times = [self._row.get(f"{stage}_seconds") for stage in _STAGES]
         if None not in times:
             self._row["reconstruction_seconds"] = sum(times)
         return {**self._row, "status": outcome.status, "message": outcome.message}
+
+    def _remove_earlier(self) -> None:
+        """Take away what was made under other settings; matches say themselves what they are of.
+
+        The outcome first: nothing may vouch for files that are on their way out.
+        """
+        (self._folder / OUTCOME).unlink(missing_ok=True)
+        for file in (CLOUD, PICTURE, PLY):
+            (self._folder / file).unlink(missing_ok=True)
+        for folder in (MODEL, TEXT, UNDISTORTED, MAPPING):
+            shutil.rmtree(self._folder / folder, ignore_errors=True)
+        for left_over in self._folder.glob("*.tmp"):
+            left_over.unlink()
 
     def _reconstruct(self) -> Outcome:
         matched = self._matched()
@@ -91,7 +119,7 @@ class ModelMaker:
             lambda: map_scene(
                 self._folder / DATABASE,
                 self._scene.images,
-                self._folder / "mapping",
+                self._folder / MAPPING,
                 self._scene.protocol,
             ),
         )
@@ -116,6 +144,7 @@ class ModelMaker:
         return matched
 
     def _timed(self, stage: str, call: Callable[[], Result]) -> Result:
+        self._stage = stage
         images = f"{len(self._scene.dataset.images)} images"
         self._announce(call_of(stage, self._combination, images))
         begun = time.process_time()
@@ -155,6 +184,10 @@ class ModelMaker:
             placement,
             requirements,
         )
+        if truth is not None and frame is None:
+            unknown = "whether it is in its place is not known: the cameras lie on a line"
+            outcome = Outcome(outcome.status, "; ".join(filter(None, (outcome.message, unknown))))
+        self._stage = "writing the model"
         export_model(model, self._folder)
         if scene.wanted.undistorted:
             undistort(self._folder, scene.images)

@@ -14,7 +14,6 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError, StoreError
 from aerocues.evaluation.folder_lock import folder_lock
 from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.protocol import ChanceTest
 from aerocues.evaluation.store import Store
 from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.evaluation.whole_files import json_content, write_whole
@@ -35,6 +34,7 @@ from aerocues.reconstruction.models import (
     RETRIED,
     SETTINGS,
     Models,
+    has_files,
     read_outcome,
     write_outcome,
     write_table,
@@ -107,7 +107,12 @@ def _check_scene(dataset: Dataset) -> None:
 
 def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Scene:
     preset = preset_named(options.preset)
-    chance = ChanceTest() if preset.chance_test else None
+    chance = options.protocol.chance if preset.chance_test else None
+    unordered = {frozenset((pair.image_1, pair.image_2)): pair for pair in reversed(dataset.pairs)}
+    once = [
+        pair for pair in dataset.pairs if unordered[frozenset((pair.image_1, pair.image_2))] is pair
+    ]
+    dataset = replace(dataset, pairs=once)
     return Scene(
         dataset=dataset,
         methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
@@ -188,6 +193,8 @@ def _finished(
         if row is None or row.get("row_key") != scene.row_key(combination):
             continue
         if retry_failed and row["status"] in RETRIED:
+            continue
+        if row.get("registered_images") and not has_files(scene.place(combination)):
             continue
         finished[combination] = row
     return finished

@@ -33,7 +33,11 @@ def with_distances(
     clouds : dict of str to Cloud
         By the key of the row.
     """
-    clouds = {each: cloud for each in rows if (cloud := cloud_of(each)) is not None}
+    clouds = {
+        each: cloud
+        for each, row in rows.items()
+        if row.get("registered_images") and (cloud := cloud_of(each)) is not None
+    }
     chosen = _reference(rows, clouds, reference)
     measured_rows, measured_clouds = [], {}
     for combination, row in rows.items():

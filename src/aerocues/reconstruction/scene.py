@@ -89,8 +89,8 @@ class Scene:
         """Names the matches of all pairs."""
         return content_hash(
             [
-                [[self.image_keys[each] for each in pair] for pair in self._pairs()],
-                [self.image_keys[image.name] for image in self.dataset.images],
+                self._pairs(),
+                [[image.name, self.image_keys[image.name]] for image in self.dataset.images],
                 self.methods.parameters(combination),
                 self.protocol.matching_identity(),
                 self.versions[0],
@@ -104,6 +104,11 @@ class Scene:
                 self._pairs(),
                 dict(self.image_keys),
                 [[group.model, group.parameters, group.names] for group in self.cameras],
+                [
+                    [image.name, image.truth.centre.tolist(), image.truth.rotation.tolist()]
+                    for image in self.dataset.images
+                    if image.truth
+                ],
                 self.preset,
                 self.protocol.identity(),
                 self.versions,
