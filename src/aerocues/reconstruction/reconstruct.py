@@ -72,7 +72,9 @@ def reconstruct_scene(
         if reference is not None and reference not in (*chosen, *others):
             raise _no_reference(reference)
         _write_settings(scene, options)
-        finished = _finished(scene, chosen, retry_failed=options.retry_failed)
+        finished = _finished(
+            scene, chosen, retry_failed=options.retry_failed, time_limit=options.time_limit
+        )
         observer.planned(len(chosen), len(finished))
         try:
             left = [each for each in chosen if each not in finished]
@@ -184,7 +186,7 @@ def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
 
 
 def _finished(
-    scene: Scene, chosen: Iterable[Combination], *, retry_failed: bool
+    scene: Scene, chosen: Iterable[Combination], *, retry_failed: bool, time_limit: float
 ) -> dict[Combination, Row]:
     """Rows of the reconstructions that are there and still hold."""
     finished = {}
@@ -194,6 +196,8 @@ def _finished(
             continue
         if retry_failed and row["status"] in RETRIED:
             continue
+        if row["status"] == "timeout" and row.get("time_limit", 0.0) < time_limit:
+            continue  # it may end within the larger limit
         if row.get("registered_images") and not has_files(scene.place(combination)):
             continue
         finished[combination] = row
@@ -222,7 +226,8 @@ def _reconstruct(
     running = run_reconstructions(scene, in_groups(combinations), limits, observer.working)
     with contextlib.closing(running):  # an interruption ends the processes here and now
         for combination, figures, last in running:
-            row = {**_identity(scene, combination), **figures, "reconstructed_at": time.time()}
+            when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}
+            row = {**_identity(scene, combination), **figures, **when}
             write_outcome(scene.place(combination), row)
             if last:
                 remove_features(scene.folder, combination)
