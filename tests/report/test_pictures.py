@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import base64
 import io
-import os
 import shutil
-import signal
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 from PIL import Image
 
@@ -136,6 +135,12 @@ def test_other_counts_of_matches_are_told(entry: ReportEntry) -> None:
     assert told == "not quite repeatable: 3 inliers when measured, 4 here"
 
 
+def drawing_processes() -> list[psutil.Process]:
+    """Those that this process has started and that still run."""
+    found = psutil.Process().children()
+    return [each for each in found if "aerocues.report.drawing" in each.cmdline()]
+
+
 def test_a_process_that_dies_costs_one_picture(entry: ReportEntry) -> None:
     from aerocues.methods.combination import Combination
     from aerocues.report.reopening import context_of
@@ -143,8 +148,9 @@ def test_a_process_that_dies_costs_one_picture(entry: ReportEntry) -> None:
     orb = Combination.parse("ORB-ORB-HAM-BF")
     with DrawingProcess(context_of(entry)) as process:
         assert isinstance(process.draw(0, orb, 60), DrawnMatches)
-        assert process._process is not None
-        os.kill(process._process.pid, signal.SIGKILL)
+        [child] = drawing_processes()
+        child.kill()
+        child.wait(10)
         assert process.draw(0, orb, 60) == "the process died in it"
         assert isinstance(process.draw(0, orb, 60), DrawnMatches)
 
@@ -156,7 +162,7 @@ def test_a_process_that_takes_too_long_is_ended(entry: ReportEntry) -> None:
     with DrawingProcess(context_of(entry)) as process:
         told = process.draw(0, Combination.parse("ORB-ORB-HAM-BF"), 0.0)
         assert told == "it took more than 0 s"
-        assert process._process is None
+        assert drawing_processes() == []
 
 
 def some(number: int, size: int) -> Pictures:

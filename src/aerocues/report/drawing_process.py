@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import subprocess
-import sys
-from multiprocessing import Pipe
-from multiprocessing.connection import Connection
-from pathlib import Path
 from types import TracebackType
 
+import psutil
+
+from aerocues.evaluation.child_process import ChildProcess, Loss
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.report.drawn_matches import DrawnMatches
 
 SECONDS_TO_END = 5.0
+SHARE_OF_MEMORY = 0.8
 
 
 class DrawingProcess:
@@ -28,8 +25,7 @@ class DrawingProcess:
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self._process: subprocess.Popen[bytes] | None = None
-        self._pipe: Connection | None = None
+        self._child: ChildProcess | None = None
 
     def __enter__(self) -> DrawingProcess:
         return self
@@ -40,7 +36,7 @@ class DrawingProcess:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._stop(patience=0 if error else SECONDS_TO_END)
+        self._stop(0.0 if error else SECONDS_TO_END)
 
     def draw(self, pair_index: int, combination: Combination, timeout: float) -> DrawnMatches | str:
         """The matches of a combination on a pair, or why there are none.
@@ -52,45 +48,22 @@ class DrawingProcess:
         timeout : float
             Wall seconds.
         """
-        pipe = self._pipe or self._start()
-        try:
-            pipe.send((pair_index, combination))
-            if pipe.poll(timeout):
-                found: DrawnMatches | str = pipe.recv()
+        child = self._child = self._child or self._start()
+        child.send((pair_index, combination))
+        reason = f"it took more than {timeout:.0f} s"
+        if child.pipe.poll(timeout):
+            found: DrawnMatches | str | Loss = child.receive()
+            if not isinstance(found, Loss):
                 return found
-            reason = f"it took more than {timeout:.0f} s"
-        except (EOFError, OSError):
             reason = "the process died in it"
         self._stop()
         return reason
 
-    def _start(self) -> Connection:
-        self._pipe, theirs = Pipe()
-        with theirs:
-            self._process = subprocess.Popen(
-                [
-                    *(sys.executable, "-m", "aerocues.report.drawing"),
-                    *(str(theirs.fileno()), str(os.getpid())),
-                ],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                # Whatever this process can import, plug-ins above all.
-                env={
-                    **os.environ,
-                    "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path),
-                },
-            )
-        self._pipe.send(self._context)
-        return self._pipe
+    def _start(self) -> ChildProcess:
+        memory = int(SHARE_OF_MEMORY * psutil.virtual_memory().total / 2**20)
+        return ChildProcess("aerocues.report.drawing", self._context, memory_limit_mb=memory)
 
-    def _stop(self, patience: float = 0) -> None:
-        if self._pipe is not None:
-            self._pipe.close()
-        if self._process is not None:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(patience)  # it ends by itself where nothing is left to do
-            self._process.kill()
-            self._process.wait()
-        self._pipe = self._process = None
+    def _stop(self, patience: float = 0.0) -> None:
+        if self._child is not None:
+            self._child.stop(patience)
+        self._child = None
