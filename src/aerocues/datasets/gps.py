@@ -17,8 +17,8 @@ from aerocues.errors import ImageError
 _GPS_DIRECTORY = 0x8825
 _LATITUDE_REF, _LATITUDE, _LONGITUDE_REF, _LONGITUDE, _ALTITUDE_REF, _ALTITUDE = range(1, 7)
 
-_SEMI_MAJOR_AXIS = 6_378_137.0
-_FLATTENING = 1 / 298.257223563
+SEMI_MAJOR_AXIS = 6_378_137.0
+FLATTENING = 1 / 298.257223563
 
 
 def read_gps(path: Path) -> GpsPosition | None:
@@ -106,8 +106,8 @@ def east_north_up(
 def _earth_centred(position: GpsPosition, ground: float) -> NDArray[np.float64]:
     latitude, longitude = math.radians(position.latitude), math.radians(position.longitude)
     height = ground if position.altitude is None else position.altitude
-    eccentricity = _FLATTENING * (2 - _FLATTENING)
-    normal = _SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * math.sin(latitude) ** 2)
+    eccentricity = FLATTENING * (2 - FLATTENING)
+    normal = SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * math.sin(latitude) ** 2)
     return np.array(
         [
             (normal + height) * math.cos(latitude) * math.cos(longitude),

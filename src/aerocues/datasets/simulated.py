@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,13 +14,12 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, TrueView
 from aerocues.datasets.fitting import fitted_size, scale_matrix
+from aerocues.datasets.flight_angles import ENU_FROM_NED, camera_from_ned
 from aerocues.datasets.folder import open_flight
 from aerocues.datasets.options import Options
 from aerocues.errors import DatasetError, ImageError
 
 _TRUTH = "truth"
-# From north, east, down to east, north, up, as GPS positions are, too.
-_UPRIGHT = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 
 @dataclass(frozen=True)
@@ -116,21 +114,11 @@ def _with_truth(
     if name not in poses:
         raise DatasetError(f"{truth / 'poses.csv'} lacks {name}; simulate the flight again")
     row = poses[name]
-    centre = _UPRIGHT @ [float(row[axis]) for axis in ("north", "east", "down")]
-    rotation = _rotation(*(float(row[angle]) for angle in ("pitch", "yaw", "roll"))) @ _UPRIGHT.T
+    centre = ENU_FROM_NED @ [float(row[axis]) for axis in ("north", "east", "down")]
+    rotation = (
+        camera_from_ned(*(float(row[angle]) for angle in ("pitch", "yaw", "roll"))) @ ENU_FROM_NED.T
+    )
     depth = DepthFile(
         truth / "depth" / Path(name).with_suffix(".npy"), (camera.width, camera.height)
     )
     return replace(image, truth=TrueView(camera, rotation, centre, depth))
-
-
-def _rotation(pitch: float, yaw: float, roll: float) -> NDArray[np.float64]:
-    """(3, 3) from north, east, down to the camera: of Rz(yaw) Ry(pitch) Rx(roll), in degrees."""
-    (cp, cy, cr), (sp, sy, sr) = (
-        [function(math.radians(angle)) for angle in (pitch, yaw, roll)]
-        for function in (math.cos, math.sin)
-    )
-    ahead = [cy * cp, sy * cp, -sp]
-    right = [cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr]
-    below = [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
-    return np.array([right, below, ahead])

@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import PinholeCamera
-
-_BODY_TO_CAMERA = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
-"""From body axes (x forward, y right, z down) to the camera's (x right, y down, z forward)."""
+from aerocues.datasets.flight_angles import camera_from_ned
 
 
 @dataclass(frozen=True)
@@ -40,21 +38,8 @@ class Pose:
 
     @property
     def rotation(self) -> NDArray[np.float64]:
-        """(3, 3) float64 from the world to the camera: C (Rz(yaw) Ry(pitch) Rx(roll))^T."""
-        return _BODY_TO_CAMERA @ body_rotation(self.pitch, self.yaw, self.roll).T
-
-
-def body_rotation(pitch: float, yaw: float, roll: float) -> NDArray[np.float64]:
-    """(3, 3) float64 from body axes to the world, Rz(yaw) Ry(pitch) Rx(roll); degrees."""
-    (cp, cy, cr), (sp, sy, sr) = (
-        [function(math.radians(angle)) for angle in (pitch, yaw, roll)]
-        for function in (math.cos, math.sin)
-    )
-    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    rotation: NDArray[np.float64] = about_z @ about_y @ about_x
-    return rotation
+        """(3, 3) float64 from the world to the camera."""
+        return camera_from_ned(self.pitch, self.yaw, self.roll)
 
 
 def pinhole(width: int, height: int, fov: float) -> PinholeCamera:

@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import PinholeCamera
+from aerocues.datasets.flight_angles import ENU_FROM_NED
 from aerocues.simulation.camera import Pose
-
-NED_FROM_ENU = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-"""COLMAP's and the trajectory's world is east, north, up: viewers expect up to be up."""
 
 CSV_HEADER = "image,north,east,down,pitch,yaw,roll,time"
 
@@ -28,7 +26,7 @@ def write_poses(
 
     ``poses.csv``: north, east, down in metres, degrees, seconds. ``trajectory.tum``: time,
     position and quaternion (x, y, z, w) from camera to world. ``sparse/``: COLMAP's text model
-    without points.
+    without points. The world of the last two is east, north, up: viewers expect up to be up.
     """
     sparse = folder / "sparse"
     sparse.mkdir(parents=True, exist_ok=True)
@@ -55,16 +53,16 @@ def _camera(camera: PinholeCamera) -> str:
 
 
 def _image(number: int, name: str, pose: Pose) -> str:
-    rotation = pose.rotation @ NED_FROM_ENU
+    rotation = pose.rotation @ ENU_FROM_NED
     x, y, z, w = _quaternion(rotation)
-    shift = -rotation @ (NED_FROM_ENU.T @ pose.centre)
+    shift = -rotation @ (ENU_FROM_NED @ pose.centre)
     numbers = " ".join(repr(float(part)) for part in (w, x, y, z, *shift))
     return f"{number + 1} {numbers} 1 {name}\n"  # an empty line: no points
 
 
 def _tum(pose: Pose, time: float) -> str:
-    centre = NED_FROM_ENU.T @ pose.centre
-    turn = _quaternion((pose.rotation @ NED_FROM_ENU).T)
+    centre = ENU_FROM_NED @ pose.centre
+    turn = _quaternion((pose.rotation @ ENU_FROM_NED).T)
     return " ".join(f"{float(part):.9f}" for part in (time, *centre, *turn))
 
 

@@ -7,20 +7,18 @@ import math
 import numpy as np
 
 from aerocues.datasets.dataset import GpsPosition
+from aerocues.datasets.gps import FLATTENING, SEMI_MAJOR_AXIS
 
 ORIGIN = GpsPosition(47.641468, -122.140165, 122.0)
 """WGS84 position of the world's origin; AirSim's by default."""
-
-_SEMI_MAJOR_AXIS = 6_378_137.0
-_FLATTENING = 1 / 298.257223563
 
 
 def geodetic(north: float, east: float, down: float, origin: GpsPosition = ORIGIN) -> GpsPosition:
     """WGS84 position of a point of the world, whose axes are those of the tangent plane."""
     latitude, longitude = math.radians(origin.latitude), math.radians(origin.longitude)
-    eccentricity = _FLATTENING * (2 - _FLATTENING)
+    eccentricity = FLATTENING * (2 - FLATTENING)
     sin_lat, cos_lat = math.sin(latitude), math.cos(latitude)
-    normal = _SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * sin_lat**2)
+    normal = SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * sin_lat**2)
     height = origin.altitude or 0.0
     up = -down
     # In the plane of the origin's meridian: away from the axis, east, and along the axis.
@@ -29,7 +27,7 @@ def geodetic(north: float, east: float, down: float, origin: GpsPosition = ORIGI
     distance = math.hypot(away, east)
     found = math.atan2(along, distance * (1 - eccentricity))
     for _ in range(6):  # converges to below a micrometre in three steps
-        normal = _SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * math.sin(found) ** 2)
+        normal = SEMI_MAJOR_AXIS / math.sqrt(1 - eccentricity * math.sin(found) ** 2)
         found = math.atan2(along + eccentricity * normal * math.sin(found), distance)
     altitude = distance / math.cos(found) - normal
     turned = longitude + math.atan2(east, away)
