@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from PIL import Image as PillowImage
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import TrueView
 from aerocues.datasets.gps import east_north_up, read_gps
+from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.flight import Flown, Settings, simulate
 from aerocues.simulation.georeference import ORIGIN, geodetic
@@ -46,6 +48,28 @@ def test_what_is_there_is_kept(flight: Path) -> None:
     first.unlink()
     assert simulate(flight, SURVEY, SETTINGS) == Flown(1, 1)
     assert first.read_bytes() == before
+
+
+def test_what_no_longer_belongs_there_goes_before_anything_is_said_of_it(tmp_path: Path) -> None:
+    from aerocues.simulation.flight_folder import FlightFolder
+
+    simulate(tmp_path, SURVEY, SETTINGS)
+    other = Survey("other", SURVEY.shots[1:])
+    FlightFolder(tmp_path).keep({"Layer1/001_b.png": "another key"})
+    assert not list(tmp_path.glob("Layer1/*.png"))
+    assert simulate(tmp_path, other, SETTINGS) == Flown(1, 0)
+    assert [path.name for path in tmp_path.glob("Layer1/*.png")] == ["001_b.png"]
+
+
+def test_folders_of_other_files_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "holiday.jpg").touch()
+    with pytest.raises(SimulationError, match=r"holds other files \(holiday.jpg"):
+        simulate(tmp_path, SURVEY, SETTINGS)
+    with pytest.raises(SimulationError, match="is a file"):
+        simulate(tmp_path / "holiday.jpg", SURVEY, SETTINGS)
+    with pytest.raises(SimulationError, match="there is no scene 'moon'"):
+        simulate(tmp_path / "new", SURVEY, replace(SETTINGS, scene="moon"))
+    assert not (tmp_path / "new").exists()
 
 
 def test_the_dataset_knows_the_truth(flight: Path) -> None:

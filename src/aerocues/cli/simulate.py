@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,17 +68,30 @@ def _fly(folder: Path, spec: str, settings: Settings) -> None:
     from rich.progress import Progress
 
     from aerocues.cli.console import count
+    from aerocues.cli.interruption import Interrupted, interruptible
     from aerocues.simulation.flight import simulate as fly
     from aerocues.simulation.planner import open_survey
 
     survey = open_survey(spec, settings.camera)
-    with Progress(console=Console(stderr=True)) as bars:
-        task = bars.add_task(f"{settings.scene}, {survey.name}", total=len(survey.shots))
-        flown = fly(folder, survey, settings, lambda done, total: bars.update(task, completed=done))
+    finished = 0
+
+    def tell(done: int, total: int) -> None:
+        nonlocal finished
+        finished = done
+        bars.update(task, completed=done, total=total)
+
+    try:
+        with interruptible(), Progress(console=Console(stderr=True)) as bars:
+            task = bars.add_task(f"{settings.scene}, {survey.name}", total=len(survey.shots))
+            flown = fly(folder, survey, settings, tell)
+    except Interrupted as interruption:
+        kept = f"{finished} of {len(survey.shots)} images are there"
+        sys.stderr.write(f"interrupted; {kept}; run the same command again to go on\n")
+        raise typer.Exit(interruption.exit_code) from None
     kept = f", {flown.kept} kept" if flown.kept else ""
     typer.echo(
         f"{count(flown.rendered, 'image')} rendered{kept} in {folder}; "
-        f"measure them with: aerocues run simulated:{folder}"
+        f"measure them with: aerocues run simulated:{shlex.quote(str(folder))}"
     )
 
 

@@ -17,24 +17,23 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import PinholeCamera
 from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.exports import write_poses
+from aerocues.simulation.flight_folder import FlightFolder, write_depth, write_json
 from aerocues.simulation.georeference import geodetic
 from aerocues.simulation.lighting import Weather
 from aerocues.simulation.metadata import write_image
 from aerocues.simulation.rendering import Stage, render
-from aerocues.simulation.scenes import HALF, build_scene, stage
+from aerocues.simulation.scenes import HALF, build_scene, require_scene, stage
 from aerocues.simulation.sensor import Sensor, develop
 from aerocues.simulation.surveys import Shot, Survey
 
 RENDERER_VERSION = "1"
 """Part of the keys of frames; raised when pictures come to differ for the same settings."""
 
-TRUTH = "truth"
 SUFFIXES = {"png": ".png", "jpeg": ".jpg"}
 Progress = Callable[[int, int], None]
 
@@ -99,6 +98,8 @@ def simulate(
 ) -> Flown:
     """Fly a survey; images that are there, made with the same settings, are kept.
 
+    Those that were made with other settings, or belong to another survey, are taken away first.
+
     Parameters
     ----------
     folder : Path
@@ -107,25 +108,29 @@ def simulate(
     settings : Settings
     progress : callable, optional
         Called with the number of finished images and of all.
+
+    Raises
+    ------
+    SimulationError
+        If there is no such scene, or the folder holds something else.
     """
-    suffix = SUFFIXES[settings.form]
-    truth = folder / TRUTH
-    truth.mkdir(parents=True, exist_ok=True)
+    require_scene(settings.scene)
+    place = FlightFolder(folder)
     times = [index * settings.interval for index in range(len(survey.shots))]
-    names = [f"{shot.name}{suffix}" for shot in survey.shots]
-    write_poses(truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
-    _write_json(truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
+    names = [f"{shot.name}{SUFFIXES[settings.form]}" for shot in survey.shots]
     half = _half(survey, settings.camera)
-    keys_path = truth / "keys.json"
-    keys = json.loads(keys_path.read_text("utf-8")) if keys_path.is_file() else {}
+    keys = {
+        name: _key(settings, shot, time, half)
+        for name, shot, time in zip(names, survey.shots, times, strict=True)
+    }
+    place.keep(keys)
+    write_poses(place.truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
+    write_json(place.truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
     studio, rendered = _Studio(settings, half), 0
-    for done, (shot, time) in enumerate(zip(survey.shots, times, strict=True)):
-        key = _key(settings, shot, time, half)
-        image, depth = folder / names[done], truth / "depth" / f"{shot.name}.npy"
-        if keys.get(names[done]) != key or not (image.is_file() and depth.is_file()):
-            studio.take(shot.pose, time, done, image, depth)
-            keys[names[done]] = key
-            _write_json(keys_path, keys)
+    for done, (name, shot, time) in enumerate(zip(names, survey.shots, times, strict=True)):
+        if not place.has(name):
+            studio.take(shot.pose, time, done, place.image(name), place.depth(name))
+            place.add(name, keys[name])
             rendered += 1
         if progress is not None:
             progress(done + 1, len(names))
@@ -147,7 +152,7 @@ class _Studio:
         pixels = develop(rendering.radiance, settings.sensor, rng)
         image.parent.mkdir(parents=True, exist_ok=True)
         depth.parent.mkdir(parents=True, exist_ok=True)
-        _write_depth(depth, rendering.depth)
+        write_depth(depth, rendering.depth)
         write_image(image, pixels, camera, pose, geodetic(pose.north, pose.east, pose.down))
 
     def _at(self, time: float) -> Stage:
@@ -176,16 +181,3 @@ def _key(settings: Settings, shot: Shot, time: float, half: float) -> str:
     facts = {"settings": asdict(settings), "shot": asdict(shot), "time": time, "half": half}
     text = json.dumps([RENDERER_VERSION, facts], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def _write_json(path: Path, content: object) -> None:
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(content, indent=1), encoding="utf-8")
-    part.replace(path)
-
-
-def _write_depth(path: Path, depth: NDArray[np.float32]) -> None:
-    part = path.with_suffix(".part")
-    with part.open("wb") as file:
-        np.save(file, depth)
-    part.replace(path)

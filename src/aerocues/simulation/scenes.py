@@ -52,9 +52,14 @@ def build_scene(name: str, seed: int = 0, half: float = HALF) -> Scene:
     SimulationError
         If there is no such scene.
     """
+    require_scene(name)
+    return _KINDS[name].build(seed, half)
+
+
+def require_scene(name: str) -> None:
+    """Raise SimulationError where there is no scene of this name."""
     if name not in _KINDS:
         raise SimulationError(f"there is no scene '{name}'; use {', '.join(_KINDS)}")
-    return _KINDS[name].build(seed, half)
 
 
 def stage(scene: Scene, weather: Weather, time: float = 0.0, wind: float = 0.0) -> Stage:
