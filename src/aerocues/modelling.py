@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import ReconstructionError, StoreError
+from aerocues.errors import ReconstructionError
 from aerocues.evaluation.results import Results
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import PRESETS
@@ -67,7 +67,7 @@ def reconstruct(
         raise ReconstructionError(
             "no combinations: name some with --combinations, or results with --from"
         )
-    scene = _as_measured(dataset, results) if isinstance(dataset, str) else dataset
+    scene = open_as_measured(dataset, results) if isinstance(dataset, str) else dataset
     store = open_results(results, scene) if results is not None else None
     if combinations is None:
         assert results is not None
@@ -82,17 +82,34 @@ def reconstruct(
     )
 
 
-def _as_measured(spec: str, results: str | Path | None) -> Dataset:
-    """The scene, read as results of it were measured."""
-    scene = open_scene(spec)
-    if results is None:
-        return scene
-    known = settings_of_results(results, scene.name)
-    width = known.get("max_width", "full")
+def open_as_measured(
+    spec: str,
+    results: str | Path | None,
+    *,
+    pairs: str | None = None,
+    max_width: int | None = None,
+    equalize: str | None = None,
+    sequences: str | None = None,
+) -> Dataset:
+    """The scene, read as results of it were measured where nothing else is asked for.
+
+    Parameters
+    ----------
+    spec, pairs, max_width, equalize, sequences
+        As `aerocues.open_dataset` takes them; images are matched with their neighbours by GPS, or
+        where those are not known, with all others.
+    results : path, optional
+    """
+    measured = settings_of_results(results)
+    width = measured.get("max_width", "full")
+    if max_width is None and width != "full":
+        max_width = int(width)
     return open_scene(
         spec,
-        max_width=None if width == "full" else int(width),
-        equalize=known.get("equalize", "none"),
+        pairs=pairs,
+        max_width=max_width,
+        equalize=equalize or measured.get("equalize", "none"),
+        sequences=sequences,
     )
 
 
@@ -104,23 +121,19 @@ def best_combinations(results: str | Path, dataset: str, top: int) -> list[str]:
     return [names[position] for position in scores.order[:top]]
 
 
-def settings_of_results(results: str | Path, dataset: str) -> dict[str, str]:
-    """How the images of results were read: ``max_width``, ``equalize`` and ``preset``.
+def settings_of_results(results: str | Path | None) -> dict[str, str]:
+    """How the images of results were read: ``max_width``, ``equalize``; and their ``preset``.
 
     Raises
     ------
     StoreError
         If `results` is no results folder.
     """
+    if results is None:
+        return {}
     settings = Results(results).settings
-    measured = settings.get("dataset") or {}
-    if measured.get("name") not in (None, dataset):
-        raise StoreError(
-            f"{results} holds results of {measured['name']} and not of {dataset}; reconstruct the "
-            "images that they were measured on"
-        )
-    known = {preset.name for preset in PRESETS}
+    read = (settings.get("dataset") or {}).get("settings", {})
+    found = {name: read.get(name) for name in ("max_width", "equalize")}
     preset = settings.get("preset")
-    found = {name: measured.get("settings", {}).get(name) for name in ("max_width", "equalize")}
-    found["preset"] = preset if preset in known else None
+    found["preset"] = preset if preset in {known.name for known in PRESETS} else None
     return {name: str(value) for name, value in found.items() if value is not None}

@@ -147,3 +147,13 @@ def test_what_is_finished_is_not_made_again(
     assert answer.code == 0
     assert answer.err == f"{len(outcomes)} of {len(outcomes)} models are there already\n"
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
+
+    # The same command: what was being made is made, and the rest after it.
+    again = begin(flight, output)
+    _, err = again.communicate(timeout=110)
+    assert again.returncode == 0, err
+    assert f"{len(outcomes)} of " in err.splitlines()[0]
+    assert {path: path.stat().st_mtime_ns for path in outcomes} == before
+    finished = sorted(path.parent.name for path in output.glob("*/outcome.json"))
+    written = pl.read_csv(output / "reconstructions.csv")
+    assert len(written) == len(finished) > len(outcomes)

@@ -108,13 +108,16 @@ def test_failures_before_the_mapper_are_told_in_words() -> None:
     assert outcome is not None
     assert (outcome.status, outcome.message) == ("no_features", "2 of 3 images have no keypoints")
     assert without_features({"a": 3, "b": 7}) is None
-    outcome = without_links(pairs=15, linked=0, verified=0)
+    outcome = without_links(15, 0, 0, chance=True)
     assert outcome is not None
     assert outcome.message == "none of 15 pairs has matches that beat chance"
-    outcome = without_links(pairs=15, linked=4, verified=0)
+    outcome = without_links(15, 4, 0, chance=True)
     assert outcome is not None
-    assert outcome.message == "COLMAP verified none of the 4 pairs that beat chance"
-    assert without_links(pairs=15, linked=4, verified=2) is None
+    assert outcome.message == "COLMAP verified none of 4 pairs with matches that beat chance"
+    outcome = without_links(15, 0, 0, chance=False)
+    assert outcome is not None
+    assert outcome.message == "none of 15 pairs has enough matches"
+    assert without_links(15, 4, 2, chance=True) is None
 
 
 def test_an_incomplete_model_tells_the_parts_or_what_is_left_out() -> None:

@@ -116,6 +116,7 @@ def reconstruct(
     """
     from aerocues.cli.interruption import interruptible
     from aerocues.errors import ReconstructionError
+    from aerocues.modelling import open_as_measured, settings_of_results
 
     if combinations is None and results is None:
         raise ReconstructionError(
@@ -124,7 +125,14 @@ def reconstruct(
     if combinations is not None and top is not None:
         raise ReconstructionError("--top chooses out of --from; leave it or --combinations out")
     with interruptible():
-        scene, chosen_preset = _open(dataset, results, pairs, sequences, (max_width, equalize))
+        scene = open_as_measured(
+            dataset,
+            results,
+            pairs=pairs,
+            max_width=max_width,
+            equalize=equalize,
+            sequences=sequences,
+        )
         options = _options(
             {
                 "max_keypoints": max_keypoints,
@@ -135,7 +143,7 @@ def reconstruct(
             },
             colours=colours,
             undistorted=undistort,
-            preset=preset or chosen_preset,
+            preset=preset or settings_of_results(results).get("preset", "default"),
             reference=reference,
             workers=workers,
             time_limit=time_limit,
@@ -144,34 +152,6 @@ def reconstruct(
         )
         models = _reconstruct(scene, output, combinations, results, top, options)
         _print(models, results)
-
-
-def _open(
-    spec: str,
-    results: Path | None,
-    pairs: str | None,
-    sequences: str | None,
-    reading: tuple[int | None, str | None],
-) -> tuple[Dataset, str]:
-    """The scene, read as the results were measured where nothing else is asked for."""
-    from aerocues.modelling import settings_of_results
-    from aerocues.reconstruction.opening import open_scene
-
-    max_width, equalize = reading
-    known: dict[str, str] = {}
-    if results is not None:
-        name = open_scene(spec, pairs=pairs, sequences=sequences).name
-        known = settings_of_results(results, name)
-    if max_width is None and known.get("max_width", "full") != "full":
-        max_width = int(known["max_width"])
-    scene = open_scene(
-        spec,
-        pairs=pairs,
-        max_width=max_width,
-        equalize=equalize or known.get("equalize", "none"),
-        sequences=sequences,
-    )
-    return scene, known.get("preset", "default")
 
 
 def _options(

@@ -46,6 +46,9 @@ class Reporter(ReconstructionObserver):
         if present:
             self._say(f"{present} of {total} models are there already")
 
+    def without_reference(self, reference: Combination, reason: str) -> None:
+        self._say(f"no distances between clouds: {reference} has no model ({reason})")
+
     def working(self, activities: Sequence[Doing]) -> None:
         now = time.monotonic()
         if self.status and now - self._drawn >= SECONDS_BETWEEN_DRAWINGS:

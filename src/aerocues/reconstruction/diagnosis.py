@@ -35,15 +35,14 @@ def without_features(counts: Mapping[str, int]) -> Outcome | None:
     return Outcome("no_features", f"{len(empty)} of {len(counts)} images have no keypoints")
 
 
-def without_links(pairs: int, linked: int, verified: int) -> Outcome | None:
-    """Whether no pair of images is verified."""
+def without_links(pairs: int, linked: int, verified: int, *, chance: bool) -> Outcome | None:
+    """Whether no pair of images is verified; `chance` tells whether pairs had to beat it."""
     if verified:
         return None
+    asked = "matches that beat chance" if chance else "enough matches"
     if linked:
-        return Outcome(
-            "no_verified_pair", f"COLMAP verified none of the {linked} pairs that beat chance"
-        )
-    return Outcome("no_verified_pair", f"none of {pairs} pairs has matches that beat chance")
+        return Outcome("no_verified_pair", f"COLMAP verified none of {linked} pairs with {asked}")
+    return Outcome("no_verified_pair", f"none of {pairs} pairs has {asked}")
 
 
 def without_model(

@@ -112,7 +112,8 @@ class ModelMaker:
         self._row.update(
             verified_pairs=len(inliers), verified_matches=sum(inliers.values(), start=0)
         )
-        if failure := without_links(*counts):
+        chance = self._scene.protocol.chance is not None
+        if failure := without_links(*counts, chance=chance):
             return failure
         models = self._timed(
             "mapping",

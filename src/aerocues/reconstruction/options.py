@@ -28,6 +28,9 @@ class ReconstructionObserver:
     def planned(self, total: int, present: int) -> None:
         """`total` combinations are to be there, `present` of which are."""
 
+    def without_reference(self, reference: Combination, reason: str) -> None:
+        """The reference has no model: there are no distances between clouds."""
+
     def working(self, activities: Sequence[Doing]) -> None:
         """What the processes are doing, several times a second."""
 

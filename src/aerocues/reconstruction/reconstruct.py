@@ -81,8 +81,11 @@ def reconstruct_scene(
             for combination, row in _reconstruct(scene, left, options.limits(), observer):
                 finished[combination] = row
         finally:  # an interruption loses nothing that is finished
-            if finished:
-                _write_rows(scene, {**others, **finished}, reference, store)
+            rows = {**others, **finished}
+            if reference in rows and not rows[reference].get("registered_images"):
+                observer.without_reference(reference, str(rows[reference]["message"]))
+            if rows:
+                _write_rows(scene, rows, reference, store)
         remove_features(output)
     return Models(output)
 
@@ -156,6 +159,7 @@ def _with_cameras(
 ) -> Scene:
     """The scene with its images in the folder, those that were not there yet, and their cameras."""
     known = read_prepared(scene.folder, scene.image_keys)
+    write_prepared(scene.folder, scene.image_keys, known)  # vouches for nothing that is overwritten
     left = [image.name for image in scene.dataset.images if image.name not in known]
     for each in prepare_images(scene, left, limits, observer.preparing):
         known[each.name] = each
