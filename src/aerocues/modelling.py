@@ -90,12 +90,13 @@ def open_as_measured(
     max_width: int | None = None,
     equalize: str | None = None,
     sequences: str | None = None,
+    subset: str | None = None,
 ) -> Dataset:
     """The scene, read as results of it were measured where nothing else is asked for.
 
     Parameters
     ----------
-    spec, pairs, max_width, equalize, sequences
+    spec, pairs, max_width, equalize, sequences, subset
         As `aerocues.open_dataset` takes them; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
     results : path, optional
@@ -110,6 +111,7 @@ def open_as_measured(
         max_width=max_width,
         equalize=equalize or measured.get("equalize", "none"),
         sequences=sequences,
+        subset=subset or measured.get("subset"),
     )
 
 
@@ -122,7 +124,7 @@ def best_combinations(results: str | Path, dataset: str, top: int) -> list[str]:
 
 
 def settings_of_results(results: str | Path | None) -> dict[str, str]:
-    """How the images of results were read: ``max_width``, ``equalize``; and their ``preset``.
+    """How images of results were read: ``max_width``, ``equalize``, ``subset``; their ``preset``.
 
     Raises
     ------
@@ -133,7 +135,7 @@ def settings_of_results(results: str | Path | None) -> dict[str, str]:
         return {}
     settings = Results(results).settings
     read = (settings.get("dataset") or {}).get("settings", {})
-    found = {name: read.get(name) for name in ("max_width", "equalize")}
+    found = {name: read.get(name) for name in ("max_width", "equalize", "subset")}
     preset = settings.get("preset")
     found["preset"] = preset if preset in {known.name for known in PRESETS} else None
     return {name: str(value) for name, value in found.items() if value is not None}

@@ -7,14 +7,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pixels
-from aerocues.evaluation.ground_truth import (
-    area_under_curve,
-    corner_error,
-    covisible,
-    repeatability,
-    transfer,
-    transfer_errors,
-)
+from aerocues.evaluation.correspondence import PlaneCorrespondence, covisible, transfer
+from aerocues.evaluation.ground_truth import area_under_curve, corner_error
+from aerocues.evaluation.ground_truth import repeatability as repeatability_by
 
 IDENTITY = np.eye(3)
 
@@ -29,6 +24,23 @@ def points(*xy: tuple[float, float]) -> NDArray[np.float32]:
 
 def blank(width: int = 100, height: int = 50, valid: NDArray[np.bool_] | None = None) -> Pixels:
     return Pixels(np.zeros((height, width, 3), np.uint8), valid)
+
+
+def transfer_errors(
+    points_1: NDArray[np.float32], points_2: NDArray[np.float32], homography: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    return PlaneCorrespondence(homography, blank(), blank()).errors(points_1, points_2)
+
+
+def repeatability(
+    points_1: NDArray[np.float32],
+    points_2: NDArray[np.float32],
+    homography: NDArray[np.float64],
+    pixels_1: Pixels,
+    pixels_2: Pixels,
+) -> float | None:
+    truth = PlaneCorrespondence(homography, pixels_1, pixels_2)
+    return repeatability_by(points_1, points_2, truth)
 
 
 def test_points_are_mapped_and_divided() -> None:

@@ -13,7 +13,7 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.datasets.decoding import FileSource
 from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.ground_truth import transfer_errors
+from aerocues.evaluation.correspondence import transfer
 from aerocues.evaluation.protocol import MeasurementProtocol
 from aerocues.evaluation.run import Limits, run
 from aerocues.evaluation.verification import Verifier
@@ -65,7 +65,7 @@ def shares(
     first: Float32Array, second: Float32Array, truth: NDArray[np.float64]
 ) -> tuple[float, float]:
     """Share of matches that are right by the truth, and of those that are inliers."""
-    right = float((transfer_errors(first, second, truth) <= 3).mean())
+    right = float((np.linalg.norm(transfer(first, truth) - second, axis=1) <= 3).mean())
     verifier = Verifier(MeasurementProtocol(chance=None), "homography", Clock(memory=False))
     model = verifier.verify(first, second, np.arange(len(first))).model
     return right, model.count / len(first)

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.ground_truth import transfer
+from aerocues.evaluation.correspondence import transfer
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.evaluation.verification import (
     Model,

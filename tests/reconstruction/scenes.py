@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -41,6 +42,9 @@ class DepthFile:
     def read(self) -> NDArray[np.float32]:
         found: NDArray[np.float32] = np.load(self.path)
         return found
+
+    def content_key(self) -> str:
+        return hashlib.sha256(self.path.read_bytes()).hexdigest()
 
 
 def _texture(generator: np.random.Generator, width: int, height: int) -> NDArray[np.uint8]:

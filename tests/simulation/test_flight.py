@@ -11,7 +11,7 @@ from PIL import Image as PillowImage
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import TrueView
 from aerocues.datasets.gps import east_north_up, read_gps
-from aerocues.errors import SimulationError
+from aerocues.errors import DatasetError, SimulationError
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.flight import Flown, Settings, simulate
 from aerocues.simulation.georeference import ORIGIN, geodetic
@@ -59,6 +59,37 @@ def test_what_no_longer_belongs_there_goes_before_anything_is_said_of_it(tmp_pat
     assert not list(tmp_path.glob("Layer1/*.png"))
     assert simulate(tmp_path, other, SETTINGS) == Flown(1, 0)
     assert [path.name for path in tmp_path.glob("Layer1/*.png")] == ["001_b.png"]
+
+
+def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
+    tmp_path: Path,
+) -> None:
+    poses = [shot.pose for shot in SURVEY.shots]
+    views = ("Layer1/pitch-90", "Layer1/pitch-60", "Layer2/pitch-90")
+    shots = [Shot(f"{view}/{i:03d}", pose) for view in views for i, pose in enumerate(poses)]
+    simulate(tmp_path, Survey("views", tuple(shots)), replace(SETTINGS, width=24, height=16))
+    spec = f"simulated:{tmp_path}"
+    dataset = open_dataset(spec)
+    assert [(pair.image_1, pair.image_2) for pair in dataset.pairs] == [
+        (f"{view}/000.png", f"{view}/001.png") for view in sorted(views)
+    ]
+    assert len({pair.sequence for pair in dataset.pairs}) == 1
+    assert len(open_dataset(spec, pairs="exhaustive").pairs) == 15
+    chosen = open_dataset(spec, subset="layer1/PITCH-90")
+    assert [image.name for image in chosen.images] == [
+        "Layer1/pitch-90/000.png",
+        "Layer1/pitch-90/001.png",
+    ]
+    assert dict(chosen.settings)["subset"] == "layer1/PITCH-90"
+    assert (
+        len(open_dataset(spec, subset="Layer1, Layer2/*/000.png", pairs="exhaustive").images) == 5
+    )
+    with pytest.raises(DatasetError, match=r"no image of .* is in --subset Layer3; there are: Lay"):
+        open_dataset(spec, subset="Layer3")
+    with pytest.raises(DatasetError, match="holds one image a view; use --pairs exhaustive"):
+        open_dataset(spec, subset="*/000.png")
+    with pytest.raises(DatasetError, match="synthetic has pairs of its own; use --sequences"):
+        open_dataset("synthetic", subset="a")
 
 
 def test_folders_of_other_files_are_left_alone(tmp_path: Path) -> None:

@@ -59,6 +59,10 @@ def reconstruct(
             help="gps[:K|:50m], exhaustive, consecutive[:K] or a file; gps where images have it."
         ),
     ] = None,
+    subset: Annotated[
+        str | None,
+        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
+    ] = None,
     sequences: Annotated[
         str | None, typer.Option(metavar="NAME", help="This project only, of several.")
     ] = None,
@@ -132,6 +136,7 @@ def reconstruct(
             max_width=max_width,
             equalize=equalize,
             sequences=sequences,
+            subset=subset,
         )
         options = _options(
             {

@@ -45,7 +45,13 @@ def run(
     ] = "default",
     pairs: Annotated[
         str | None,
-        typer.Option(help="consecutive[:K], exhaustive, gps[:K|:50m] or a file of pairs."),
+        typer.Option(
+            help="consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file of pairs."
+        ),
+    ] = None,
+    subset: Annotated[
+        str | None,
+        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
     ] = None,
     limit: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="The first N pairs only.")
@@ -102,6 +108,7 @@ def run(
             equalize=equalize,
             limit=limit,
             sequences=sequences,
+            subset=subset,
         )
         arguments: dict[str, Any] = {
             "dataset": images,

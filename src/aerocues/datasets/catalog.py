@@ -165,7 +165,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="simulated",
         form="simulated:DIR",
-        pairs="consecutive by name; others with --pairs",
+        pairs="consecutive by name in each folder; others with --pairs",
         ground_truth="exact poses, intrinsics and depth",
         needs="a flight that aerocues simulate has made",
         layout="DIR/**/*.png (.jpg), DIR/truth/poses.csv, camera.json, depth/**/*.npy",
@@ -200,6 +200,7 @@ def open_dataset(
     equalize: str = "none",
     limit: int | None = None,
     sequences: str | Sequence[str] | None = None,
+    subset: str | None = None,
 ) -> Dataset:
     """Open a dataset by its text form.
 
@@ -209,8 +210,8 @@ def open_dataset(
         ``synthetic[:IMAGE]``, ``synthetic-extended[:IMAGE]``, ``oxford:DIR``, ``hpatches:DIR``,
         ``uav:DIR``, ``flight:DIR``, ``simulated:DIR``, or the path of a plain folder.
     pairs : str, optional
-        ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m`` or the
-        path of a pairs file; for the kinds without pairs of their own.
+        ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m``,
+        ``overlap:0.3-0.9`` or the path of a pairs file; for the kinds without pairs of their own.
     max_width : int, optional
         Wider images are shrunk to this width in pixels; homographies are scaled along.
     equalize : str
@@ -220,6 +221,10 @@ def open_dataset(
     sequences : str or sequence of str, optional
         Keep the sequences that match one of these names or globs, in any case; a text is split at
         its commas.
+    subset : str, optional
+        Use only the images whose name or folder, relative to the dataset's, matches one of these
+        globs, separated by commas: ``Layer3/pitch-90_yaw0``; for the kinds without pairs of their
+        own.
 
     Returns
     -------
@@ -236,7 +241,11 @@ def open_dataset(
     kind, target = _parse(spec)
     if pairs is not None and not kind.takes_pairs:
         raise DatasetError(f"{kind.name} has pairs of its own; leave --pairs out")
-    dataset = kind.load(target, Options(pairs, max_width, equalize))
+    if subset is not None and not kind.takes_pairs:
+        raise DatasetError(
+            f"{kind.name} has pairs of its own; use --sequences in place of --subset"
+        )
+    dataset = kind.load(target, Options(pairs, max_width, equalize, subset))
     names = sequences if sequences is None or isinstance(sequences, str) else ",".join(sequences)
     source = Source(
         spec=_absolute(kind, target),
@@ -245,6 +254,7 @@ def open_dataset(
         equalize=equalize,
         limit=limit,
         sequences=names,
+        subset=subset,
     )
     return replace(_restricted(dataset, limit, sequences), source=source)
 

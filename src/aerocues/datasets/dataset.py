@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from typing import Literal, Protocol
 
@@ -61,13 +61,18 @@ class DepthSource(Protocol):
     """Where the true depth of an image comes from."""
 
     def read(self) -> NDArray[np.float32]:
-        """Planar depth: (H, W) float32 metres along the viewing axis; not finite where unknown.
+        """Planar depth: (H, W) float32 metres along the viewing axis.
+
+        Infinite in the sky, NaN where it is unknown.
 
         Raises
         ------
         ImageError
             If it cannot be read.
         """
+
+    def content_key(self) -> str:
+        """Hexadecimal hash of the depth and of the size at which it is read."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +105,11 @@ class TrueView:
     rotation: NDArray[np.float64]
     centre: NDArray[np.float64]
     depth: DepthSource | None = None
+
+    def identity(self) -> list[object]:
+        """All that is known, as JSON can write it; the depth by its hash."""
+        depth = None if self.depth is None else self.depth.content_key()
+        return [*astuple(self.camera), self.rotation.tolist(), self.centre.tolist(), depth]
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +160,7 @@ class Source:
     ----------
     spec : str
         Text form of the dataset, with an absolute path.
-    pairs, max_width, equalize, limit, sequences
+    pairs, max_width, equalize, limit, sequences, subset
         As `open_dataset` takes them; the names of sequences as one text.
     """
 
@@ -160,6 +170,7 @@ class Source:
     equalize: str = "none"
     limit: int | None = None
     sequences: str | None = None
+    subset: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +196,11 @@ class Dataset:
     def pair(self, index: int) -> Pair:
         """The pair whose ``index`` is `index`; KeyError where there is none."""
         return self._by_index[index]
+
+    def true_views(self, pair: Pair) -> tuple[TrueView, TrueView] | None:
+        """What is known to be true of both images of a pair; None where it is not of both."""
+        first, second = self.image(pair.image_1).truth, self.image(pair.image_2).truth
+        return None if first is None or second is None else (first, second)
 
     @cached_property
     def _by_index(self) -> dict[int, Pair]:

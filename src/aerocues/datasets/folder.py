@@ -11,7 +11,7 @@ from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.gps import read_gps
 from aerocues.datasets.header import SUFFIXES
 from aerocues.datasets.options import Options
-from aerocues.datasets.pairing import Consecutive, PairStrategy, parse_pairs
+from aerocues.datasets.pairing import Consecutive, Names, PairStrategy, parse_pairs
 from aerocues.errors import DatasetError
 
 
@@ -55,14 +55,28 @@ def subfolders(folder: Path) -> list[Path]:
 
 
 def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Image]:
-    """Images of files, named by their path relative to `root`, with GPS where EXIF has it."""
+    """Images of files, named by their path relative to `root`, with GPS where EXIF has it.
+
+    Raises
+    ------
+    DatasetError
+        If the options choose a subset and no file is in it.
+    """
+    names = {path.relative_to(root).as_posix(): path for path in paths}
+    chosen = {name: path for name, path in names.items() if options.takes(name)}
+    if names and not chosen:
+        folders = dict.fromkeys(name.rpartition("/")[0] or name for name in names)
+        shown = ", ".join(list(folders)[:4]) + (", ..." if len(folders) > 4 else "")
+        raise DatasetError(
+            f"no image of {root} is in --subset {options.subset}; there are: {shown}"
+        )
     return [
         Image(
-            path.relative_to(root).as_posix(),
+            name,
             FileSource(path.absolute(), options.max_width, options.equalize),
             read_gps(path),
         )
-        for path in paths
+        for name, path in chosen.items()
     ]
 
 
@@ -81,27 +95,49 @@ def open_folder(folder: Path, options: Options) -> Dataset:
     DatasetError
         If there are fewer than two images, or the pairs cannot be made.
     """
-    return _one_scene(folder, image_paths(folder), options)
+    return _one_scene(folder, folder_images(folder, options), options)
 
 
 def open_flight(folder: Path, options: Options) -> Dataset:
     """The images of a flight: of a folder and of all folders below it, in order of their names."""
-    return _one_scene(folder, image_paths(folder, tree=True), options)
+    return _one_scene(folder, folder_images(folder, options, tree=True), options)
 
 
-def _one_scene(folder: Path, paths: Sequence[Path], options: Options) -> Dataset:
-    if len(paths) < 2:
-        raise DatasetError(_too_few(folder, paths))
+def folder_images(folder: Path, options: Options, *, tree: bool = False) -> list[Image]:
+    """Two or more images of a folder, or of all folders below it.
+
+    Raises
+    ------
+    DatasetError
+        If there are fewer.
+    """
+    paths = image_paths(folder, tree=tree)
     images = file_images(paths, folder, options)
+    if len(images) < 2:
+        raise DatasetError(_too_few(folder, [image.name for image in images]))
+    return images
+
+
+def _one_scene(folder: Path, images: Sequence[Image], options: Options) -> Dataset:
     strategy, text = chosen_pairs(options)
+    return scene_of(folder, images, strategy.pairs(images), options.settings(pairs=text))
+
+
+def scene_of(
+    folder: Path,
+    images: Sequence[Image],
+    pairs: Iterable[Names],
+    settings: tuple[tuple[str, str], ...],
+) -> Dataset:
+    """The dataset of a folder's images, all of one scene."""
     name = folder.resolve().name or "folder"
-    pairs = [Pair(i, a, b, name) for i, (a, b) in enumerate(strategy.pairs(images))]
-    return Dataset(name, images, pairs, "epipolar", options.settings(pairs=text))
+    numbered = [Pair(i, first, second, name) for i, (first, second) in enumerate(pairs)]
+    return Dataset(name, images, numbered, "epipolar", settings)
 
 
-def _too_few(folder: Path, paths: Sequence[Path]) -> str:
-    if paths:
-        return f"{folder} holds one image only ({paths[0].name}); two or more make a pair: add some"
+def _too_few(folder: Path, names: Sequence[str]) -> str:
+    if names:
+        return f"{folder} holds one image only ({names[0]}); two or more make a pair: add some"
     message = f"{folder} holds no images ({', '.join(sorted(SUFFIXES))}); "
     inside = [child.name for child in subfolders(folder) if image_paths(child)]
     if inside:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from itertools import accumulate
 
 from aerocues.datasets.fitting import check_settings
 
@@ -19,11 +21,14 @@ class Options:
         Wider images are shrunk to this width in pixels.
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
+    subset : str or None
+        Only images whose name or folder matches one of these globs, in any case; None: all.
     """
 
     pairs: str | None = None
     max_width: int | None = None
     equalize: str = "none"
+    subset: str | None = None
 
     def __post_init__(self) -> None:
         check_settings(self.max_width, self.equalize)
@@ -31,4 +36,13 @@ class Options:
     def settings(self, **more: str) -> tuple[tuple[str, str], ...]:
         """The options as `Dataset.settings` records them, and what the kind of dataset adds."""
         width = "full" if self.max_width is None else str(self.max_width)
-        return (*more.items(), ("max_width", width), ("equalize", self.equalize))
+        chosen = {} if self.subset is None else {"subset": self.subset}
+        return (*more.items(), *chosen.items(), ("max_width", width), ("equalize", self.equalize))
+
+    def takes(self, name: str) -> bool:
+        """Whether an image of this name, relative to the dataset's folder, is among the chosen."""
+        if self.subset is None:
+            return True
+        folders = accumulate(name.lower().split("/"), lambda path, part: f"{path}/{part}")
+        globs = [glob.strip().strip("/").lower() for glob in self.subset.split(",")]
+        return any(fnmatchcase(place, glob) for place in folders for glob in globs)

@@ -14,11 +14,15 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Image
 from aerocues.datasets.gps import east_north_up
+from aerocues.datasets.overlap import Overlapping
 from aerocues.errors import DatasetError
 
 Names = tuple[str, str]
 GPS_NEIGHBOURS = 8
-FORMS = "consecutive, consecutive:K, exhaustive, gps, gps:K, gps:50m or a file of pairs"
+FORMS = (
+    "consecutive, consecutive:K, exhaustive, gps, gps:K, gps:50m, overlap:0.3-0.9 (where depth is "
+    "known) or a file of pairs"
+)
 
 
 class PairStrategy(Protocol):
@@ -180,6 +184,14 @@ def _listed(names: Sequence[str]) -> str:
     return ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
 
 
+def _overlapping(limits: str) -> PairStrategy:
+    least, _, most = limits.partition("-")
+    low, high = float(least), float(most or 1.0)
+    if not 0.0 < low <= high <= 1.0:
+        raise DatasetError(f"--pairs overlap:{limits}: give shares of an image such as 0.3-0.9")
+    return Overlapping(low, high)
+
+
 _PATTERNS: tuple[tuple[str, Callable[[str], PairStrategy]], ...] = (
     (r"consecutive", lambda _: Consecutive()),
     (r"consecutive:([1-9]\d*)", lambda count: Consecutive(int(count))),
@@ -187,6 +199,7 @@ _PATTERNS: tuple[tuple[str, Callable[[str], PairStrategy]], ...] = (
     (r"gps", lambda _: GpsNeighbours()),
     (r"gps:([1-9]\d*)", lambda count: GpsNeighbours(int(count))),
     (r"gps:(\d+(?:\.\d+)?)\s*m", lambda metres: GpsNeighbours(radius=float(metres))),
+    (r"overlap:((?:\d*\.)?\d+(?:-(?:\d*\.)?\d+)?)", _overlapping),
 )
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ from numpy.typing import NDArray
 from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, TrueView
 from aerocues.datasets.fitting import fitted_size, scale_matrix
 from aerocues.datasets.flight_angles import ENU_FROM_NED, camera_from_ned
-from aerocues.datasets.folder import open_flight
+from aerocues.datasets.folder import chosen_pairs, folder_images, scene_of
 from aerocues.datasets.options import Options
+from aerocues.datasets.pairing import Consecutive
 from aerocues.errors import DatasetError, ImageError
 
 _TRUTH = "truth"
@@ -54,6 +56,16 @@ class DepthFile:
         columns = _nearest(width, stored.shape[1])
         return np.asarray(stored[np.ix_(rows, columns)], np.float32)
 
+    def content_key(self) -> str:
+        digest = hashlib.sha256(repr(self.size).encode())
+        try:
+            digest.update(self.path.read_bytes())
+        except OSError as error:
+            raise ImageError(
+                f"{self.path} cannot be read ({error.strerror}); simulate the flight again"
+            ) from error
+        return digest.hexdigest()
+
 
 def _nearest(wanted: int, stored: int) -> NDArray[np.intp]:
     centres = (np.arange(wanted) + 0.5) * stored / wanted - 0.5
@@ -79,14 +91,28 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         raise DatasetError(
             f"{truth} cannot be read ({error}); simulate the flight again"
         ) from error
-    flight = open_flight(folder, options)
     prefix = folder.resolve().relative_to(root.resolve())
     fitted = scaled_camera(camera, options.max_width)
     images = [
         _with_truth(image, (prefix / image.name).as_posix(), poses, fitted, truth)
-        for image in flight.images
+        for image in folder_images(folder, options, tree=True)
     ]
-    return replace(flight, images=images)
+    strategy, text = chosen_pairs(options)
+    # From the last image of one view to the first of the next there is nothing consecutive.
+    views = _by_folder(images) if isinstance(strategy, Consecutive) else [images]
+    pairs = [pair for view in views for pair in strategy.pairs(view)]
+    if not pairs:
+        raise DatasetError(
+            f"{folder} holds one image a view; use --pairs exhaustive or overlap:0.3"
+        )
+    return scene_of(folder, images, pairs, options.settings(pairs=text))
+
+
+def _by_folder(images: Sequence[Image]) -> list[list[Image]]:
+    folders: dict[str, list[Image]] = {}
+    for image in images:
+        folders.setdefault(image.name.rpartition("/")[0], []).append(image)
+    return list(folders.values())
 
 
 def _root(folder: Path) -> Path:

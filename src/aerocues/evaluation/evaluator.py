@@ -18,7 +18,8 @@ from aerocues.evaluation.features import (
 )
 from aerocues.evaluation.metrics import Row, add_metrics
 from aerocues.evaluation.rows import begin_row
-from aerocues.evaluation.two_views import Announce, TwoViewMeasurement, TwoViews, record_time
+from aerocues.evaluation.truth_comparison import TwoViews
+from aerocues.evaluation.two_views import Announce, TwoViewMeasurement, record_time
 from aerocues.evaluation.unit import Context, PairWork, StageCall, Unit
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import (

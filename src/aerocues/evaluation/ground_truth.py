@@ -1,4 +1,4 @@
-"""Metrics against a true homography."""
+"""Metrics against what is known to be true."""
 
 from __future__ import annotations
 
@@ -7,70 +7,17 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from aerocues.datasets.dataset import Pixels
+from aerocues.datasets.true_geometry import Points
+from aerocues.evaluation.correspondence import Correspondence, transfer
 
 REPEATABILITY_RADIUS = 3.0
-
-Points = NDArray[np.float32] | NDArray[np.float64]
-
-
-def transfer(points: Points, homography: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Map (N, 2) points; those that pass through infinity become NaN."""
-    homogeneous = np.column_stack([points, np.ones(len(points))]).astype(np.float64) @ homography.T
-    depth = homogeneous[:, 2:]
-    ahead = depth > 1e-12
-    moved: NDArray[np.float64] = np.where(
-        ahead, homogeneous[:, :2] / np.where(ahead, depth, 1), np.nan
-    )
-    return moved
-
-
-def _inverse(homography: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(np.linalg.inv(homography), np.float64)
-
-
-def transfer_errors(
-    points_1: Points, points_2: Points, homography: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Distance in pixels of image 2 between each point and where the truth puts it.
-
-    Returns
-    -------
-    (N,) float64
-        Infinite where the true position lies behind the camera.
-    """
-    distance = np.linalg.norm(transfer(points_1, homography) - points_2, axis=1)
-    errors: NDArray[np.float64] = np.nan_to_num(distance, nan=np.inf)
-    return errors
-
-
-def covisible(points: Points, homography: NDArray[np.float64], target: Pixels) -> NDArray[np.bool_]:
-    """Which of (N, 2) points fall on valid pixels of the other image."""
-    moved = transfer(points, homography)
-    height, width = target.bgr.shape[:2]
-    rounded = np.floor(np.nan_to_num(moved, nan=-9.0) + 0.5)
-    inside: NDArray[np.bool_] = (
-        (rounded[:, 0] >= 0)
-        & (rounded[:, 1] >= 0)
-        & (rounded[:, 0] < width)
-        & (rounded[:, 1] < height)
-    )
-    if target.valid is not None:
-        where = rounded[inside].astype(np.int64)
-        inside[inside] = target.valid[where[:, 1], where[:, 0]]
-    return inside
 
 
 def _distinct(points: Points) -> NDArray[np.float64]:
     return np.asarray(np.unique(points, axis=0), np.float64)
 
 
-def repeatability(
-    points_1: Points,
-    points_2: Points,
-    homography: NDArray[np.float64],
-    pixels_1: Pixels,
-    pixels_2: Pixels,
-) -> float | None:
+def repeatability(points_1: Points, points_2: Points, truth: Correspondence) -> float | None:
     """Share of covisible keypoints found again, one to one (Mikolajczyk et al., IJCV 2005).
 
     Two keypoints are the same where each is the other's nearest and they lie at most 3 px apart
@@ -82,17 +29,14 @@ def repeatability(
     float or None
         None where one image has no covisible keypoint.
     """
-    first, second = _distinct(points_1), _distinct(points_2)
-    first = first[covisible(first, homography, pixels_2)]
-    second = second[covisible(second, _inverse(homography), pixels_1)]
-    if not len(first) or not len(second):
+    moved, second = truth.shared(_distinct(points_1), _distinct(points_2))
+    if not len(moved) or not len(second):
         return None
-    moved = transfer(first, homography)
     distance, forth = cKDTree(second).query(moved, distance_upper_bound=REPEATABILITY_RADIUS)
     back = cKDTree(moved).query(second, distance_upper_bound=REPEATABILITY_RADIUS)[1]
     found = np.flatnonzero(np.isfinite(distance))
     same = int((np.asarray(back)[np.asarray(forth)[found]] == found).sum())
-    return same / min(len(first), len(second))
+    return same / min(len(moved), len(second))
 
 
 def corner_error(

@@ -55,22 +55,32 @@ class Plan:
         return sum(unit.rows for unit in self.units)
 
 
+@dataclass(frozen=True)
+class _Keys:
+    """Hashes of what is read: images and, where they are known, their true views."""
+
+    images: Mapping[str, str]
+    views: Mapping[str, str]
+
+    def truth(self, pair: Pair) -> object:
+        """What is known to be true of a pair."""
+        if pair.homography is not None:
+            return pair.homography.tolist()
+        views = [self.views.get(name) for name in (pair.image_1, pair.image_2)]
+        return None if None in views else views
+
+
 def _row_key(
-    context: Context,
-    pair: Pair,
-    combination: Combination,
-    image_keys: Mapping[str, str],
-    method_keys: Mapping[Combination, str],
+    context: Context, pair: Pair, combination: Combination, keys: _Keys, method_key: str
 ) -> str:
     """What decides the measurement, and nothing else: no name and no number."""
-    truth = None if pair.homography is None else pair.homography.tolist()
     return content_hash(
         [
             context.settings_key,
             context.dataset.geometry,
-            method_keys[combination],
-            [image_keys[pair.image_1], image_keys[pair.image_2]],
-            truth,
+            method_key,
+            [keys.images[pair.image_1], keys.images[pair.image_2]],
+            keys.truth(pair),
         ]
     )
 
@@ -110,11 +120,11 @@ class _Planner:
         self,
         context: Context,
         combinations: Sequence[Combination],
-        image_keys: Mapping[str, str],
+        keys: _Keys,
         is_present: Callable[[str], bool],
     ) -> None:
         self._context = context
-        self._image_keys = image_keys
+        self._keys = keys
         self._is_present = is_present
         self._gray = {image.name for image in context.dataset.images if image.source.is_gray()}
         self._method_keys = {c: content_hash(context.methods.parameters(c)) for c in combinations}
@@ -141,7 +151,8 @@ class _Planner:
             if reason:
                 self.tally.ruled_out[combination, reason] += 1
                 continue
-            key = _row_key(self._context, pair, combination, self._image_keys, self._method_keys)
+            method_key = self._method_keys[combination]
+            key = _row_key(self._context, pair, combination, self._keys, method_key)
             self.tally.rows.append(PlannedRow(pair.index, combination, key))
             if not self._is_present(key):
                 chosen.append(combination)
@@ -173,11 +184,13 @@ def make_plan(
         If a file cannot be read at all.
     """
     images = context.dataset.images
-    image_keys: dict[str, str] = {}
+    keys, views = dict[str, str](), dict[str, str]()
     for done, image in enumerate(images, start=1):
-        image_keys[image.name] = image.source.content_key()
+        keys[image.name] = image.source.content_key()
+        if image.truth is not None:
+            views[image.name] = content_hash(image.truth.identity())
         progress(done, len(images))
-    planner = _Planner(context, combinations, image_keys, is_present)
+    planner = _Planner(context, combinations, _Keys(keys, views), is_present)
     detectors = dict.fromkeys(combination.detector for combination in combinations)
     units = [
         unit

@@ -9,7 +9,7 @@ import cv2
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.schema import PIXEL_THRESHOLDS, empty_row
+from aerocues.evaluation.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS, empty_row
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.combination import Combination
 
@@ -41,6 +41,9 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
         # Where no homography is found, none is right: a failed pair counts in the mean.
         row["homography_error"] = float("inf")
         row.update({f"homography_auc@{threshold}": 0.0 for threshold in PIXEL_THRESHOLDS})
+    if context.dataset.true_views(pair) is not None:
+        row["pose_error"] = float("inf")
+        row.update({f"pose_auc@{angle}": 0.0 for angle in ANGLE_THRESHOLDS})
     return row
 
 

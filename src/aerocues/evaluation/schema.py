@@ -10,6 +10,7 @@ from aerocues.evaluation.metrics import METRICS, Row
 
 ColumnType = Literal["string", "integer", "float"]
 PIXEL_THRESHOLDS = (1, 3, 5)
+ANGLE_THRESHOLDS = (5, 10, 20)
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,22 @@ GROUND_TRUTH: tuple[Column, ...] = (
             f"area under the cumulative curve of homography_error up to {t} px",
         )
         for t in PIXEL_THRESHOLDS
+    ),
+    Column(
+        "pose_error",
+        "float",
+        "degrees",
+        "larger of the angles between estimated and true rotation and direction of the shift; "
+        "infinite where there is no estimate",
+    ),
+    *(
+        Column(
+            f"pose_auc@{a}",
+            "float",
+            "ratio",
+            f"area under the cumulative curve of pose_error up to {a} degrees",
+        )
+        for a in ANGLE_THRESHOLDS
     ),
 )
 

@@ -3,43 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation import ground_truth
 from aerocues.evaluation.clock import Clock, StageTime
-from aerocues.evaluation.features import Described, ImageFeatures, run_stage
+from aerocues.evaluation.features import run_stage
 from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.schema import PIXEL_THRESHOLDS
+from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context, StageCall
-from aerocues.evaluation.verification import IndexArray, Verifier
-from aerocues.methods.arrays import Float32Array, Matches
+from aerocues.evaluation.verification import Verifier
+from aerocues.methods.arrays import Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
 
 Announce = Callable[[StageCall], None]
-
-
-@dataclass(frozen=True)
-class TwoViews:
-    """The two images of a pair under one detector and descriptor."""
-
-    pair: Pair
-    images: tuple[ImageFeatures, ImageFeatures]
-    described: tuple[Described, Described]
-
-
-@dataclass(frozen=True, eq=False)
-class Matched:
-    """Points of matches, (M, 2) float32 pixels each, and their order by descriptor distance."""
-
-    points_1: Float32Array
-    points_2: Float32Array
-    order: IndexArray
 
 
 class TwoViewMeasurement:
@@ -51,11 +30,11 @@ class TwoViewMeasurement:
         self._announce = announce
         self._matchers: dict[tuple[str, str], MatcherStage] = {}
         self._verifier = Verifier(context.protocol, context.dataset.geometry, clock)
-        self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
+        self._truth = TruthComparison(context.dataset, self._verifier)
 
     def begin_pair(self) -> None:
         """Forget what was remembered of the pair before."""
-        self._repeatabilities.clear()
+        self._truth.begin_pair()
 
     def measure(self, row: Row, views: TwoViews, combination: Combination) -> str:
         """Match, verify and measure; the status. The row keeps what was found until a failure."""
@@ -74,8 +53,7 @@ class TwoViewMeasurement:
             np.argsort(matches.distance, kind="stable"),
         )
         status = self._verify(row, views, combination, found)
-        if views.pair.homography is not None:
-            self._compare_with_truth(row, views, views.pair.homography, found)
+        self._truth.compare(row, views, found)
         return status
 
     def _match(self, row: Row, views: TwoViews, combination: Combination) -> Matches:
@@ -109,35 +87,6 @@ class TwoViewMeasurement:
         if verdict.model.matrix is None:
             return "no_model"
         return "ok" if verdict.passed else "chance"
-
-    def _compare_with_truth(
-        self, row: Row, views: TwoViews, truth: NDArray[np.float64], found: Matched
-    ) -> None:
-        errors = ground_truth.transfer_errors(found.points_1, found.points_2, truth)
-        for threshold in PIXEL_THRESHOLDS:
-            correct = int((errors <= threshold).sum())
-            if len(errors):
-                row[f"gt_precision@{threshold}"] = correct / len(errors)
-            row[f"gt_matching_score@{threshold}"] = correct / row["keypoints_1"]
-        pixels_1, pixels_2 = (image.pixels for image in views.images)
-        xy_1, xy_2 = (described.features.keypoints.xy for described in views.described)
-        same = (xy_1.tobytes(), xy_2.tobytes())
-        if same not in self._repeatabilities:
-            self._repeatabilities[same] = ground_truth.repeatability(
-                xy_1, xy_2, truth, pixels_1, pixels_2
-            )
-        row["gt_repeatability"] = self._repeatabilities[same]
-        model = run_stage(
-            "estimating a homography",
-            lambda: self._verifier.homography(
-                found.points_1, found.points_2, found.order, row["sampling"] or "uniform"
-            ),
-        )
-        row["homography_inliers"] = model.count
-        error = ground_truth.corner_error(model.matrix, truth, pixels_1)
-        row["homography_error"] = error
-        for threshold in PIXEL_THRESHOLDS:
-            row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)
 
 
 def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:

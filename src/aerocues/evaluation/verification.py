@@ -211,6 +211,11 @@ class Verifier:
             return self._look(replace(last, shuffles=0), points_1, points_2, order).model
         return estimate_homography(points_1, points_2, self._looks[0].parameters)
 
+    def sampling(self, name: str) -> tuple[Any, bool]:
+        """OpenCV's parameters of a way to sample, and whether it wants the best matches first."""
+        look = next((look for look in self._looks if look.sampling == name), self._looks[0])
+        return look.parameters, look.sampling != "uniform"
+
     def _look(
         self, look: Look, points_1: Float32Array, points_2: Float32Array, order: IndexArray
     ) -> Verdict:

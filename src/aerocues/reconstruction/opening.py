@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
@@ -18,6 +19,7 @@ def open_scene(
     max_width: int | None = None,
     equalize: str = "none",
     sequences: str | Sequence[str] | None = None,
+    subset: str | None = None,
 ) -> Dataset:
     """Open a dataset to reconstruct it.
 
@@ -26,7 +28,7 @@ def open_scene(
 
     Parameters
     ----------
-    spec, pairs, max_width, equalize, sequences
+    spec, pairs, max_width, equalize, sequences, subset
         As `aerocues.open_dataset` takes them.
 
     Raises
@@ -34,13 +36,20 @@ def open_scene(
     DatasetError
         If the dataset cannot be opened.
     """
-    options = {"max_width": max_width, "equalize": equalize, "sequences": sequences}
-    dataset = open_dataset(spec, pairs=pairs, **options)  # type: ignore[arg-type]
+    opened = partial(
+        open_dataset,
+        spec,
+        max_width=max_width,
+        equalize=equalize,
+        sequences=sequences,
+        subset=subset,
+    )
+    dataset = opened(pairs=pairs)
     if pairs is not None or not _has_choice(dataset):
         return dataset
     located = all(image.gps is not None for image in dataset.images)
     chosen = NEIGHBOURS if located else EVERY_PAIR
-    return open_dataset(spec, pairs=chosen, **options)  # type: ignore[arg-type]
+    return opened(pairs=chosen)
 
 
 def _has_choice(dataset: Dataset) -> bool:

@@ -77,6 +77,7 @@ SHOWN: tuple[PairColumn, ...] = (
     _true("gt_matching_score@3", "ratio", "matches right within 3 px / keypoints of image 1"),
     _true("gt_repeatability", "ratio", "covisible keypoints found again within 3 px"),
     _true("homography_auc@3", "ratio", "accuracy of the estimated homography up to 3 px"),
+    _true("pose_auc@10", "ratio", "accuracy of the estimated relative pose up to 10 degrees"),
 )
 
 

@@ -124,6 +124,10 @@ _GROUND_TRUTH: tuple[Criterion, ...] = (
         Criterion(f"homography_auc@{t}", description=f"accuracy of the homography up to {t} px")
         for t in (1, 3, 5)
     ),
+    *(
+        Criterion(f"pose_auc@{a}", description=f"accuracy of the relative pose up to {a} degrees")
+        for a in (5, 10, 20)
+    ),
 )
 
 _RECONSTRUCTION: tuple[Criterion, ...] = (

@@ -47,6 +47,7 @@ FEATURES = (
     "gt_matching_score@3",
     "gt_repeatability",
     "homography_auc@3",
+    "pose_auc@10",
 )
 # How a reconstruction ends that holds no image. Where a program failed, nothing is known.
 WITHOUT_MODEL = ("no_features", "no_verified_pair", "no_initial_pair", "no_model")

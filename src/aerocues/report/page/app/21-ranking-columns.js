@@ -51,7 +51,7 @@ function methodColumns(entry) {
 
 const USUAL_MEANS = [
   ["precision_beyond_chance", "precision"], ["excess_inliers", "inliers"],
-  ["gt_precision@3"], ["homography_auc@3"]];
+  ["gt_precision@3"], ["homography_auc@3"], ["pose_auc@10"]];
 
 function meanColumns(entry) {
   const usual = new Set(USUAL_MEANS.map(names => names.find(name => measureOf(entry, name))));

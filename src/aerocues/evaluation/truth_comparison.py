@@ -1,0 +1,127 @@
+"""What the truth says of two described images and their matches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Dataset, Pair, TrueView
+from aerocues.datasets.true_geometry import Located
+from aerocues.evaluation import ground_truth
+from aerocues.evaluation.correspondence import Correspondence, PlaneCorrespondence
+from aerocues.evaluation.depth_correspondence import DepthCorrespondence
+from aerocues.evaluation.features import Described, ImageFeatures, run_stage
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.relative_pose import estimate_pose, pose_error, true_pose
+from aerocues.evaluation.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS
+from aerocues.evaluation.verification import IndexArray, Verifier
+from aerocues.methods.arrays import Float32Array
+
+
+@dataclass(frozen=True)
+class TwoViews:
+    """The two images of a pair under one detector and descriptor."""
+
+    pair: Pair
+    images: tuple[ImageFeatures, ImageFeatures]
+    described: tuple[Described, Described]
+
+
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """Points of matches, (M, 2) float32 pixels each, and their order by descriptor distance."""
+
+    points_1: Float32Array
+    points_2: Float32Array
+    order: IndexArray
+
+
+class TruthComparison:
+    """Fills what follows from ground truth into rows; nothing where there is none.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    verifier : Verifier
+        Estimates models as those of the same matches were.
+    """
+
+    def __init__(self, dataset: Dataset, verifier: Verifier) -> None:
+        self._dataset = dataset
+        self._verifier = verifier
+        self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
+        self._depth: DepthCorrespondence | None = None
+
+    def begin_pair(self) -> None:
+        """Forget what was remembered of the pair before."""
+        self._repeatabilities.clear()
+        self._depth = None
+
+    def compare(self, row: Row, views: TwoViews, found: Matched) -> None:
+        """Add what is known: of matches, of keypoints, of a homography, of the pose."""
+        correspondence = self._correspondence(views)
+        if correspondence is not None:
+            self._compare_points(row, views, found, correspondence)
+        if views.pair.homography is not None:
+            self._compare_homography(row, views, views.pair.homography, found)
+        true_views = self._dataset.true_views(views.pair)
+        if true_views is not None:
+            self._compare_pose(row, true_views, found)
+
+    def _correspondence(self, views: TwoViews) -> Correspondence | None:
+        pair = views.pair
+        if pair.homography is not None:
+            return PlaneCorrespondence(pair.homography, *(image.pixels for image in views.images))
+        true_views = self._dataset.true_views(pair)
+        if self._depth is None and true_views is not None and all(v.depth for v in true_views):
+            what = f"reading the depths of {pair.image_1} and {pair.image_2}"
+            first, second = run_stage(what, lambda: [Located.of(view) for view in true_views])
+            self._depth = DepthCorrespondence(first, second)
+        return self._depth
+
+    def _compare_points(
+        self, row: Row, views: TwoViews, found: Matched, truth: Correspondence
+    ) -> None:
+        errors = truth.errors(found.points_1, found.points_2)
+        for threshold in PIXEL_THRESHOLDS:
+            correct = int((errors <= threshold).sum())
+            if len(errors):
+                row[f"gt_precision@{threshold}"] = correct / len(errors)
+            row[f"gt_matching_score@{threshold}"] = correct / row["keypoints_1"]
+        xy_1, xy_2 = (described.features.keypoints.xy for described in views.described)
+        same = (xy_1.tobytes(), xy_2.tobytes())
+        if same not in self._repeatabilities:
+            self._repeatabilities[same] = ground_truth.repeatability(xy_1, xy_2, truth)
+        row["gt_repeatability"] = self._repeatabilities[same]
+
+    def _compare_homography(
+        self, row: Row, views: TwoViews, truth: NDArray[np.float64], found: Matched
+    ) -> None:
+        model = run_stage(
+            "estimating a homography",
+            lambda: self._verifier.homography(
+                found.points_1, found.points_2, found.order, row["sampling"] or "uniform"
+            ),
+        )
+        row["homography_inliers"] = model.count
+        error = ground_truth.corner_error(model.matrix, truth, views.images[0].pixels)
+        row["homography_error"] = error
+        for threshold in PIXEL_THRESHOLDS:
+            row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)
+
+    def _compare_pose(self, row: Row, truth: tuple[TrueView, TrueView], found: Matched) -> None:
+        first, second = truth
+        points_1, points_2 = found.points_1, found.points_2
+        parameters, guided = self._verifier.sampling(row["sampling"] or "uniform")
+        if guided:
+            points_1, points_2 = points_1[found.order], points_2[found.order]
+        estimate = run_stage(
+            "estimating a pose",
+            lambda: estimate_pose(points_1, points_2, (first.camera, second.camera), parameters),
+        )
+        error = pose_error(estimate, true_pose(first, second))
+        row["pose_error"] = error
+        for angle in ANGLE_THRESHOLDS:
+            row[f"pose_auc@{angle}"] = ground_truth.area_under_curve(error, angle)
