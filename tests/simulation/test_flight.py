@@ -92,6 +92,21 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
         open_dataset("synthetic", subset="a")
 
 
+def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
+    small = replace(SETTINGS, width=24, height=16)
+    part, whole = tmp_path / "part", tmp_path / "whole"
+    assert simulate(part, SURVEY, small, subset="layer1/001*") == Flown(1, 0)
+    assert [path.name for path in part.glob("Layer1/*.png")] == ["001_b.png"]
+    assert simulate(whole, SURVEY, small) == Flown(2, 0)
+    name = "Layer1/001_b.png"
+    assert (part / name).read_bytes() == (whole / name).read_bytes()
+    assert simulate(whole, SURVEY, small, subset=name) == Flown(0, 1)
+    assert len(list(whole.glob("Layer1/*.png"))) == 2
+    assert simulate(part, SURVEY, small) == Flown(1, 1)
+    with pytest.raises(SimulationError, match=r"no image of short is in --subset x; there are: La"):
+        simulate(part, SURVEY, small, subset="x")
+
+
 def test_folders_of_other_files_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "holiday.jpg").touch()
     with pytest.raises(SimulationError, match=r"holds other files \(holiday.jpg"):

@@ -70,6 +70,27 @@ def test_time_moves_cars_and_wind_moves_leaves(suburb: Scene) -> None:
     assert set(np.flatnonzero(shift).tolist()) <= set(leafy.tolist())
 
 
+def test_glints_change_from_view_to_view_and_leave_the_depth(
+    suburb: Scene, suburb_stage: Stage
+) -> None:
+    dull = stage(suburb, Weather(glints=0.0))
+    views = [POSE, Pose(12, 0, -50, -90, 0)]
+    with_glints, without = (
+        [render(s, CAMERA, pose) for pose in views] for s in (suburb_stage, dull)
+    )
+    # How much brighter glints make each spot of the ground, as the one and the other camera see it.
+    first, second = (
+        np.log(a.radiance.mean(axis=2) / b.radiance.mean(axis=2))
+        for a, b in zip(with_glints, without, strict=True)
+    )
+    shift = round(12 / 50 * CAMERA.focal_y)
+    own = float(np.corrcoef(first[:-shift].ravel(), second[shift:].ravel())[0, 1])
+    assert 0.02 < first.std() < 0.2
+    assert abs(own) < 0.2
+    for a, b in zip(with_glints, without, strict=True):
+        np.testing.assert_array_equal(a.depth, b.depth)
+
+
 def test_the_sun_moves_shadows_and_haze_lowers_contrast(suburb: Scene, suburb_stage: Stage) -> None:
     plain = render(suburb_stage, CAMERA, POSE)
     evening = render(stage(suburb, Weather(azimuth=270, elevation=20)), CAMERA, POSE)

@@ -21,6 +21,10 @@ def simulate(
         str,
         typer.Option(help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."),
     ] = "mini",
+    subset: Annotated[
+        str | None,
+        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
+    ] = None,
     scene: Annotated[str, typer.Option(help="What is flown over.")] = "suburb",
     seed: Annotated[int, typer.Option(min=0, help="Of the scene and the noise.")] = 0,
     size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1000x665",
@@ -29,6 +33,9 @@ def simulate(
         str, typer.Option(metavar="AZ,EL", help="Azimuth from north, elevation; degrees.")
     ] = "140,48",
     haze: Annotated[float, typer.Option(min=0.0, help="0 for clear air.")] = 0.2,
+    glints: Annotated[
+        float, typer.Option(min=0.0, help="Leaves and roofs look different from each side.")
+    ] = 1.0,
     noise: Annotated[float, typer.Option(min=0.0, help="Of the sensor; 0 for none.")] = 1.0,
     blur: Annotated[float, typer.Option(min=0.0, help="Of the lens, pixels.")] = 0.55,
     motion: Annotated[float, typer.Option(min=0.0, help="Motion blur, pixels.")] = 0.0,
@@ -38,7 +45,12 @@ def simulate(
     interval: Annotated[
         float, typer.Option(min=0.0, help="Seconds between images: cars drive on.")
     ] = 0.0,
-    wind: Annotated[float, typer.Option(min=0.0, help="Moves crowns by so many metres.")] = 0.0,
+    wind: Annotated[
+        float,
+        typer.Option(
+            "--wind", "--wind-trees", min=0.0, help="Moves crowns by so many metres (--interval)."
+        ),
+    ] = 0.0,
     form: Annotated[str, typer.Option("--format", help="png or jpeg.")] = "png",
 ) -> None:
     """Simulate a survey flight: images, poses, depth. Goes on where an earlier run broke off."""
@@ -54,25 +66,27 @@ def simulate(
         width=int(width),
         height=int(height),
         fov=fov,
-        weather=Weather(azimuth, elevation, haze),
+        weather=Weather(azimuth, elevation, haze, glints),
         sensor=Sensor(noise, blur, motion, exposure_jitter=exposure_jitter),
         interval=interval,
         wind=wind,
         form=form,
     )
-    _fly(output, survey, settings)
+    _fly(output, survey, settings, subset)
 
 
-def _fly(folder: Path, spec: str, settings: Settings) -> None:
+def _fly(folder: Path, spec: str, settings: Settings, subset: str | None) -> None:
     from rich.console import Console
     from rich.progress import Progress
 
     from aerocues.cli.console import count
     from aerocues.cli.interruption import Interrupted, interruptible
+    from aerocues.simulation.flight import shots_in
     from aerocues.simulation.flight import simulate as fly
     from aerocues.simulation.planner import open_survey
 
     survey = open_survey(spec, settings.camera)
+    total = len(shots_in(survey, subset, settings.form))
     finished = 0
 
     def tell(done: int, total: int) -> None:
@@ -82,10 +96,10 @@ def _fly(folder: Path, spec: str, settings: Settings) -> None:
 
     try:
         with interruptible(), Progress(console=Console(stderr=True)) as bars:
-            task = bars.add_task(f"{settings.scene}, {survey.name}", total=len(survey.shots))
-            flown = fly(folder, survey, settings, tell)
+            task = bars.add_task(f"{settings.scene}, {survey.name}", total=total)
+            flown = fly(folder, survey, settings, tell, subset)
     except Interrupted as interruption:
-        kept = f"{finished} of {len(survey.shots)} images are there"
+        kept = f"{finished} of {total} images are there"
         sys.stderr.write(f"interrupted; {kept}; run the same command again to go on\n")
         raise typer.Exit(interruption.exit_code) from None
     kept = f", {flown.kept} kept" if flown.kept else ""

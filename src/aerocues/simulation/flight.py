@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from aerocues.datasets.dataset import PinholeCamera
+from aerocues.datasets.options import Options
 from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.exports import write_poses
@@ -31,7 +32,7 @@ from aerocues.simulation.scenes import HALF, build_scene, require_scene, stage
 from aerocues.simulation.sensor import Sensor, develop
 from aerocues.simulation.surveys import Shot, Survey
 
-RENDERER_VERSION = "1"
+RENDERER_VERSION = "2"
 """Part of the keys of frames; raised when pictures come to differ for the same settings."""
 
 SUFFIXES = {"png": ".png", "jpeg": ".jpg"}
@@ -94,7 +95,11 @@ class Flown:
 
 
 def simulate(
-    folder: Path, survey: Survey, settings: Settings, progress: Progress | None = None
+    folder: Path,
+    survey: Survey,
+    settings: Settings,
+    progress: Progress | None = None,
+    subset: str | None = None,
 ) -> Flown:
     """Fly a survey; images that are there, made with the same settings, are kept.
 
@@ -108,13 +113,17 @@ def simulate(
     settings : Settings
     progress : callable, optional
         Called with the number of finished images and of all.
+    subset : str, optional
+        Render only the images whose name or folder matches one of these globs, separated by commas;
+        the poses are those of the whole survey.
 
     Raises
     ------
     SimulationError
-        If there is no such scene, or the folder holds something else.
+        If there is no such scene, the subset is empty, or the folder holds something else.
     """
     require_scene(settings.scene)
+    chosen = shots_in(survey, subset, settings.form)
     place = FlightFolder(folder)
     times = [index * settings.interval for index in range(len(survey.shots))]
     names = [f"{shot.name}{SUFFIXES[settings.form]}" for shot in survey.shots]
@@ -127,14 +136,36 @@ def simulate(
     write_poses(place.truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
     write_json(place.truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
     studio, rendered = _Studio(settings, half), 0
-    for done, (name, shot, time) in enumerate(zip(names, survey.shots, times, strict=True)):
+    for done, number in enumerate(chosen, start=1):
+        name, pose = names[number], survey.shots[number].pose
         if not place.has(name):
-            studio.take(shot.pose, time, done, place.image(name), place.depth(name))
+            studio.take(pose, times[number], number, place.image(name), place.depth(name))
             place.add(name, keys[name])
             rendered += 1
         if progress is not None:
-            progress(done + 1, len(names))
-    return Flown(rendered, len(names) - rendered)
+            progress(done, len(chosen))
+    return Flown(rendered, len(chosen) - rendered)
+
+
+def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
+    """Numbers of the shots of a survey whose name or folder is in a subset; None: of all.
+
+    Raises
+    ------
+    SimulationError
+        If there is none.
+    """
+    options = Options(subset=subset)
+    chosen = [
+        i for i, shot in enumerate(survey.shots) if options.takes(f"{shot.name}{SUFFIXES[form]}")
+    ]
+    if not chosen:
+        folders = list(dict.fromkeys(shot.name.rpartition("/")[0] for shot in survey.shots))
+        shown = ", ".join(folders[:4]) + (", ..." if len(folders) > 4 else "")
+        raise SimulationError(
+            f"no image of {survey.name} is in --subset {subset}; there are: {shown}"
+        )
+    return chosen
 
 
 class _Studio:

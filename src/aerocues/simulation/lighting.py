@@ -32,11 +32,15 @@ class Weather:
         Of the sun: degrees from north over east, and above the horizon.
     haze : float
         0 for none; 1 halves the contrast at about 700 m.
+    glints : float
+        How much the look of a spot depends on where it is seen from, over that of dry vegetation:
+        leaves and blades shine in one direction, and tiles do a little. 0 for none.
     """
 
     azimuth: float = 140.0
     elevation: float = 48.0
     haze: float = 0.2
+    glints: float = 1.0
 
 
 class Light(NamedTuple):
@@ -59,6 +63,8 @@ class Light(NamedTuple):
     half : float
     extinction : float
         Of the air, per metre.
+    glints : float
+        As `Weather` has it.
     """
 
     sun: NDArray[np.float64]
@@ -71,6 +77,7 @@ class Light(NamedTuple):
     floor: NDArray[np.float32]
     half: float
     extinction: float
+    glints: float
 
 
 def bake(mesh: Mesh, floor: NDArray[np.float32], half: float, weather: Weather) -> Light:
@@ -103,6 +110,7 @@ def bake(mesh: Mesh, floor: NDArray[np.float32], half: float, weather: Weather) 
         floor,
         half,
         weather.haze * 0.001,
+        weather.glints,
     )
 
 

@@ -68,3 +68,16 @@ def fractal_noise(
         wavelength *= 0.5
         seed += 1
     return total
+
+
+@compiled
+def changing_noise(x: float, y: float, u: float, v: float, seed: int) -> float:
+    """Smooth noise as `value_noise` that is another one wherever `u` or `v` grow by one."""
+    first, second = math.floor(u), math.floor(v)
+    total = 0.0
+    for i in range(2):
+        for j in range(2):
+            weight = (u - first if i else 1 - u + first) * (v - second if j else 1 - v + second)
+            own = seed + 7919 * (int(first) + i) + 104729 * (int(second) + j)
+            total += weight * value_noise(x, y, own)
+    return total

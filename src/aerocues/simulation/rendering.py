@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import PinholeCamera
+from aerocues.simulation.appearance import glint, lit, sky, through_air
 from aerocues.simulation.camera import Pose, enlarged
 from aerocues.simulation.compiled import compiled
 from aerocues.simulation.covers import ground_colour
 from aerocues.simulation.ground import Plan
-from aerocues.simulation.lighting import Light, sky_seen, sunlit
+from aerocues.simulation.lighting import Light
 from aerocues.simulation.mesh import Mesh
 from aerocues.simulation.rasterizer import boxes_of, visible
-from aerocues.simulation.surfaces import Material, Rgb, object_colour
+from aerocues.simulation.surfaces import Material, Rgb, object_colour, scaled
 
 SAMPLES = 2
 """A pixel's visibility is sampled at this many points along each of its sides."""
@@ -152,47 +153,6 @@ def _measure(
 
 
 @compiled
-def _sky(ray: Rgb, light: Light) -> Rgb:
-    length = math.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
-    up = max(-ray[2] / length, 0.0)
-    pale = math.exp(-5.0 * up)
-    return (
-        light.sky_colour[0] * 0.44 + pale * 0.75,
-        light.sky_colour[1] * 0.55 + pale * 0.70,
-        light.sky_colour[2] * 0.77 + pale * 0.45,
-    )
-
-
-@compiled
-def _lit(kind: int, colour: Rgb, at: Rgb, normal: Rgb, ray: Rgb, light: Light) -> Rgb:
-    facing = normal[0] * light.sun[0] + normal[1] * light.sun[1] + normal[2] * light.sun[2]
-    seen = sky_seen(light, at)
-    shadow = sunlit(light, at, normal)
-    sun = max(facing, 0.0) * shadow
-    if kind == Material.LEAF:
-        # Leaves point everywhere and let light through: the sun also reaches their far side.
-        sun = (0.30 + 0.55 * max(facing, 0.0) + 0.15 * abs(facing)) * shadow * (0.35 + 0.65 * seen)
-    sky = seen * (0.62 + 0.38 * normal[2])
-    # What the ground reflects lights walls and the undersides of eaves.
-    bounced = 0.10 * (1.0 - 0.8 * normal[2]) * (0.4 + 0.6 * seen)
-    red = sun * light.sun_colour[0] + sky * light.sky_colour[0] + 1.1 * bounced
-    green = sun * light.sun_colour[1] + sky * light.sky_colour[1] + 1.0 * bounced
-    blue = sun * light.sun_colour[2] + sky * light.sky_colour[2] + 0.7 * bounced
-    return colour[0] * red, colour[1] * green, colour[2] * blue
-
-
-@compiled
-def _through_air(colour: Rgb, distance: float, light: Light) -> Rgb:
-    clear = math.exp(-light.extinction * distance)
-    veil = 1.0 - clear
-    return (
-        colour[0] * clear + veil * 0.78,
-        colour[1] * clear + veil * 0.84,
-        colour[2] * clear + veil * 0.92,
-    )
-
-
-@compiled
 def _seen(
     triangle: int,
     column: float,
@@ -211,7 +171,7 @@ def _seen(
     """Radiance of a triangle at a position of the picture."""
     ray = _ray(rotation, lens, column, row)
     if triangle < 0:
-        return _sky(ray, light)
+        return sky(ray, light)
     plane = _plane(vertices, triangles, triangle)
     depth = _reach(plane, centre, ray)
     at = centre[0] + depth * ray[0], centre[1] + depth * ray[1], -(centre[2] + depth * ray[2])
@@ -232,7 +192,9 @@ def _seen(
     else:
         base = float(colours[row_of, 0]), float(colours[row_of, 1]), float(colours[row_of, 2])
         colour = object_colour(kind, base, triangle, at, normal, footprint, 1000 + 40 * row_of)
-    return _through_air(_lit(kind, colour, at, normal, ray, light), depth * length, light)
+    if light.glints > 0.0:
+        colour = scaled(colour, 1.0 + light.glints * glint(kind, at, ray, length, footprint))
+    return through_air(lit(kind, colour, at, normal, light), depth * length, light)
 
 
 @compiled
