@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import json
 import re
+import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -174,6 +177,31 @@ def test_the_trajectory_has_the_centres(flight: Path) -> None:
     rows = np.loadtxt(flight / "truth/trajectory.tum")
     assert rows[:, 1:4] == pytest.approx(np.array([(0, 0, 40), (0, 8, 40)]))
     assert np.linalg.norm(rows[:, 4:], axis=1) == pytest.approx(1.0)
+    assert rows[:, 0].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.skipif(shutil.which("exiftool") is None, reason="exiftool is not installed")
+def test_exiftool_reads_what_a_drone_would_write(tmp_path: Path) -> None:
+    pose = Pose(120.0, -75.0, -60.0, -120.0, -90.0)
+    gps = geodetic(pose.north, pose.east, pose.down)
+    for suffix in (".png", ".jpg"):
+        pixels = np.zeros((80, 120, 3), np.uint8)
+        write_image(tmp_path / f"a{suffix}", pixels, pinhole(120, 80, 90.0), pose, gps)
+    wanted = ("-validate", "-FOV", "-GPS*", "-FocalLengthIn35mmFormat", "-Gimbal*")
+    command = ["exiftool", "-json", "-n", "-G0", *wanted, str(tmp_path)]
+    told = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    assert len(told) == 2
+    for found in told:
+        assert found["Composite:GPSLatitude"] == pytest.approx(gps.latitude, abs=1e-8)
+        assert found["Composite:GPSLongitude"] == pytest.approx(gps.longitude, abs=1e-8)
+        assert found["Composite:GPSAltitude"] == pytest.approx(gps.altitude, abs=1e-3)
+        assert found["EXIF:FocalLengthIn35mmFormat"] == 18
+        assert found["Composite:FOV"] == pytest.approx(90, abs=0.01)
+        angles = [float(found[f"XMP:Gimbal{axis}Degree"]) for axis in ("Pitch", "Yaw", "Roll")]
+        assert angles == pytest.approx([-60, 90, 180])
+        errors, warnings, _ = (int(count) for count in found["ExifTool:Validate"].split())
+        assert errors == 0
+        assert warnings <= 1  # Pillow writes the components as bytes, not as undefined
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg"])

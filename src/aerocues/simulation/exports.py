@@ -25,9 +25,11 @@ def write_poses(
     """Write all forms into a folder.
 
     ``poses.csv``: north, east, down in metres, degrees, seconds. ``trajectory.tum``: time,
-    position and quaternion (x, y, z, w) from camera to world. ``sparse/``: COLMAP's text model
+    position and quaternion (x, y, z, w) from camera to world; images of one moment count as taken
+    a second apart, as such a file wants its times to ascend. ``sparse/``: COLMAP's text model
     without points. The world of the last two is east, north, up: viewers expect up to be up.
     """
+    moments = times if len(set(times)) == len(times) else [float(i) for i in range(len(times))]
     sparse = folder / "sparse"
     sparse.mkdir(parents=True, exist_ok=True)
     rows = [
@@ -35,7 +37,7 @@ def write_poses(
         for name, p, time in zip(names, poses, times, strict=True)
     ]
     _write(folder / "poses.csv", [CSV_HEADER, *rows])
-    _write(folder / "trajectory.tum", [_tum(p, t) for p, t in zip(poses, times, strict=True)])
+    _write(folder / "trajectory.tum", [_tum(p, t) for p, t in zip(poses, moments, strict=True)])
     _write(sparse / "cameras.txt", [_camera(camera)])
     images = [_image(number, n, p) for number, (n, p) in enumerate(zip(names, poses, strict=True))]
     _write(sparse / "images.txt", images)

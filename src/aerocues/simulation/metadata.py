@@ -13,7 +13,14 @@ from aerocues.simulation.camera import Pose
 
 _MAKE, _MODEL, _SOFTWARE, _EXIF, _GPS = 271, 272, 305, 34665, 34853
 _FOCAL_LENGTH, _PLANE_X, _PLANE_Y, _PLANE_UNIT, _FOCAL_35 = 37386, 41486, 41487, 41488, 41989
+_WIDTH, _HEIGHT = 40962, 40963
 _CENTIMETRE = 3
+_REQUIRED = {282: 72.0, 283: 72.0, 296: 2, 531: 1}
+"""What EXIF asks of every image: resolution in pixels an inch, position of the chroma samples."""
+
+_REQUIRED_OF_CAMERA = {36864: b"0232", 37121: b"\x01\x02\x03\x00", 40960: b"0100", 40961: 1}
+"""And of its camera: versions of EXIF and FlashPix, components, the colour space sRGB."""
+
 _SENSOR_WIDTH = 36.0
 """Millimetres; pixels then give the focal length as on 35 mm film."""
 
@@ -79,6 +86,7 @@ def _exif(camera: PinholeCamera, gps: GpsPosition) -> Any:
 
     exif = Image.Exif()
     exif[_MAKE], exif[_MODEL], exif[_SOFTWARE] = "aerocues", "simulated", "aerocues"
+    exif.update(_REQUIRED)
     millimetres = camera.focal_x * _SENSOR_WIDTH / camera.width
     density = camera.width / _SENSOR_WIDTH * 10
     exif[_EXIF] = {
@@ -87,9 +95,13 @@ def _exif(camera: PinholeCamera, gps: GpsPosition) -> Any:
         _PLANE_Y: IFDRational(round(density * 1e6), 10**6),
         _PLANE_UNIT: _CENTIMETRE,
         _FOCAL_35: round(millimetres),
+        _WIDTH: camera.width,
+        _HEIGHT: camera.height,
+        **_REQUIRED_OF_CAMERA,
     }
     altitude = gps.altitude or 0.0
     exif[_GPS] = {
+        0: b"\x02\x03\x00\x00",
         1: "N" if gps.latitude >= 0 else "S",
         2: _sexagesimal(abs(gps.latitude)),
         3: "E" if gps.longitude >= 0 else "W",
