@@ -9,7 +9,8 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError
 from aerocues.evaluation.results import Results
 from aerocues.methods.combination import Combination
-from aerocues.methods.presets import PRESETS
+from aerocues.methods.preset_files import recorded_preset
+from aerocues.methods.presets import PRESETS, Preset, preset_named
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
@@ -124,7 +125,7 @@ def best_combinations(results: str | Path, dataset: str, top: int) -> list[str]:
 
 
 def settings_of_results(results: str | Path | None) -> dict[str, str]:
-    """How images of results were read: ``max_width``, ``equalize``, ``subset``; their ``preset``.
+    """How images of results were read: ``max_width``, ``equalize`` and ``subset``.
 
     Raises
     ------
@@ -133,9 +134,15 @@ def settings_of_results(results: str | Path | None) -> dict[str, str]:
     """
     if results is None:
         return {}
-    settings = Results(results).settings
-    read = (settings.get("dataset") or {}).get("settings", {})
-    found = {name: read.get(name) for name in ("max_width", "equalize", "subset")}
-    preset = settings.get("preset")
-    found["preset"] = preset if preset in {known.name for known in PRESETS} else None
-    return {name: str(value) for name, value in found.items() if value is not None}
+    read = (Results(results).settings.get("dataset") or {}).get("settings", {})
+    wanted = ("max_width", "equalize", "subset")
+    return {name: str(read[name]) for name in wanted if read.get(name) is not None}
+
+
+def preset_of_results(results: str | Path | None) -> Preset:
+    """The preset that results were measured under; the default one where that is not known."""
+    if results is not None:
+        settings = Results(results).settings
+        if "preset_parts" in settings or settings.get("preset") in {each.name for each in PRESETS}:
+            return recorded_preset(settings)
+    return preset_named("default")

@@ -15,6 +15,8 @@ from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.run import Limits, Observer, plan_run, run
 from aerocues.evaluation.schema import COLUMNS
+from aerocues.methods.presets import Preset
+from aerocues.methods.strongest import KeypointLimit
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import (
     assert_same_rows,
@@ -250,3 +252,29 @@ def test_plug_ins_run_end_to_end(
     assert parameters["detector"] == ["feature-arena 0.3", "arena.methods:Corners", {"step": 1}]
     with pytest.raises(SelectionError, match="package_that_nobody_has"):
         run(views, "NEEDY-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())
+
+
+def test_a_limit_and_a_preset_are_part_of_a_measurement(tmp_path: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(2))
+    names = "ORB-ORB-HAM-BF,FAST-BRIEF-HAM-BF"
+    results = tmp_path / "results"
+    engine = InlineEngine()
+    free = rows_of(run(dataset, names, results, engine=engine).table())
+    limit = KeypointLimit(200, spread=True)
+    table = run(dataset, names, results, limit=limit, engine=engine).table()
+    for row in table.to_dicts():
+        assert row["keypoints_1"] <= 200
+        assert (row["max_keypoints"], row["keypoint_choice"]) == (200, "spread")
+        assert row["inlier_threshold"] == 3.0
+    assert not set(table["row_key"]) & {str(row["row_key"]) for row in free.values()}
+    assert not plan_run(dataset, names, results, limit=limit).units
+    assert not plan_run(dataset, names, results).units
+
+    strict = Preset("strict", "strict", True, thresholds={"ORB-ORB": 0.5})
+    table = run(dataset, names, results, preset=strict, engine=engine).table()
+    thresholds = dict(zip(table["detector"], table["inlier_threshold"], strict=True))
+    assert thresholds == {"ORB": 0.5, "FAST": 3.0}
+    inliers = dict(zip(table["detector"], table["inliers"], strict=True))
+    before = {str(row["detector"]): row["inliers"] for row in free.values()}
+    assert inliers["FAST"] == before["FAST"]
+    assert inliers["ORB"] < before["ORB"]

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from aerocues.errors import SelectionError
@@ -39,6 +41,7 @@ def test_a_preset_changes_what_it_names_and_nothing_else(methods: Methods) -> No
 
 @pytest.mark.parametrize("kind", ["detectors", "descriptors"])
 def test_a_preset_of_an_unknown_method_is_refused(methods: Methods, kind: str) -> None:
-    preset = Preset("odd", "odd", True, **{kind: {"SURF": {"size": 1}}})
+    parts: dict[str, Any] = {kind: {"SURF": {"size": 1}}}
+    preset = Preset("odd", "odd", True, **parts)
     with pytest.raises(SelectionError, match=r"preset odd sets parameters of the .* SURF"):
         methods.with_preset(preset)

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from aerocues.methods.arrays import Keypoints
-from aerocues.methods.registry import opencv_methods
-from aerocues.methods.strongest import limited, strongest
 from aerocues.reconstruction.diagnosis import (
     Placement,
     judged,
@@ -43,30 +41,6 @@ def keypoints(responses: list[float]) -> Keypoints:
     count = len(responses)
     found = Keypoints.from_xy(np.arange(2.0 * count).reshape(count, 2))
     return Keypoints(**{**vars(found), "response": np.array(responses, np.float32)})
-
-
-def test_the_strongest_keypoints_keep_their_order() -> None:
-    kept = strongest(keypoints([3, 1, 5, 2, 4]), 3, seed=0)
-    np.testing.assert_array_equal(kept.response, [3, 5, 4])
-    assert len(strongest(keypoints([3, 1]), 0, seed=0)) == 2
-    assert len(strongest(keypoints([3, 1]), 5, seed=0)) == 2
-
-
-def test_equal_responses_favour_no_part_of_the_image() -> None:
-    kept = strongest(keypoints([0.0] * 1000), 100, seed=0)
-    assert 300 < kept.xy[:, 0].mean() / 2 < 700
-    again = strongest(keypoints([0.0] * 1000), 100, seed=0)
-    np.testing.assert_array_equal(kept.xy, again.xy)
-
-
-def test_detectors_that_limit_themselves_are_told_to() -> None:
-    methods = limited(opencv_methods(), 4000)
-    assert methods.detectors["ORB"].parameters["nfeatures"] == 4000
-    assert methods.detectors["GFTT_H"].parameters["maxCorners"] == 4000
-    assert methods.detectors["AKAZE"] == opencv_methods().detectors["AKAZE"]
-    assert limited(opencv_methods(), 0) == opencv_methods()
-    raised = limited(methods, 9000)
-    assert raised.detectors["ORB"].parameters["nfeatures"] == 4000
 
 
 def matched() -> MatchedScene:

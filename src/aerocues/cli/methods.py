@@ -24,7 +24,7 @@ def methods(
     context: typer.Context,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     preset: Annotated[
-        str, typer.Option(metavar="NAME", help="Show the parameters of this preset.")
+        str, typer.Option(metavar="NAME", help="Show the parameters of this preset or file.")
     ] = "default",
 ) -> None:
     """List what is installed, with parameters and sources."""

@@ -120,7 +120,7 @@ def reconstruct(
     """
     from aerocues.cli.interruption import interruptible
     from aerocues.errors import ReconstructionError
-    from aerocues.modelling import open_as_measured, settings_of_results
+    from aerocues.modelling import open_as_measured, preset_of_results
 
     if combinations is None and results is None:
         raise ReconstructionError(
@@ -148,7 +148,7 @@ def reconstruct(
             },
             colours=colours,
             undistorted=undistort,
-            preset=preset or settings_of_results(results).get("preset", "default"),
+            preset=preset or preset_of_results(results),
             reference=reference,
             workers=workers,
             time_limit=time_limit,

@@ -13,6 +13,7 @@ import typer
 if TYPE_CHECKING:
     from aerocues.cli.progress import Tally
     from aerocues.evaluation.results import Results
+    from aerocues.methods.strongest import KeypointLimit
 
 MEGABYTES = 1024
 
@@ -41,8 +42,14 @@ def run(
         bool, typer.Option("--all", help="All that can run, not only those that mean something.")
     ] = False,
     preset: Annotated[
-        str, typer.Option(metavar="NAME", help="Parameters and protocol: default or thesis.")
+        str, typer.Option(metavar="NAME", help="Parameters: default, thesis, or a preset's file.")
     ] = "default",
+    max_keypoints: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
+    ] = 0,
+    spread: Annotated[
+        bool, typer.Option("--spread", help="Keep the strongest of each part of the image.")
+    ] = False,
     pairs: Annotated[
         str | None,
         typer.Option(
@@ -120,6 +127,7 @@ def run(
             "preset": preset,
             "seed": seed,
             "timing": timing.value,
+            "limit": _limit(max_keypoints, spread),
             "retry_failed": retry_failed,
         }
         if dry_run:
@@ -129,6 +137,15 @@ def run(
             return
         arguments["limits"] = _limits(workers, timeout, memory_limit)
         _print_results(_measure(arguments), images.name, top)
+
+
+def _limit(max_keypoints: int, spread: bool) -> KeypointLimit:
+    from aerocues.errors import SelectionError
+    from aerocues.methods.strongest import KeypointLimit
+
+    if spread and not max_keypoints:
+        raise SelectionError("--spread chooses which keypoints are kept; give --max-keypoints, too")
+    return KeypointLimit(max_keypoints, spread)
 
 
 def _limits(workers: int | None, timeout: float | None, memory_limit: float | None) -> Any:

@@ -48,7 +48,7 @@ class Evaluator:
         clock = Clock(memory=context.protocol.timing == "exclusive")
         self._context = context
         self._announce = announce
-        self._extractor = FeatureExtractor(clock, context.protocol.seed)
+        self._extractor = FeatureExtractor(clock, context.protocol.seed, context.protocol.limit)
         self._two_views = TwoViewMeasurement(context, clock, announce)
         self._detectors: dict[str, DetectorStage] = {}
         self._descriptors: dict[str, DescriptorStage] = {}
@@ -110,15 +110,21 @@ class Evaluator:
             self._announce(StageCall("describe", pair.index, image_name, detector, name))
             what = f"{name} describing {detector} keypoints of {image_name}"
             try:
-                if name not in self._descriptors:
-                    self._descriptors[name] = run_stage(
-                        name, lambda: make_descriptor(self._context.methods, name)
-                    )
-                descriptor = self._descriptors[name]
+                descriptor = self._descriptor(name, detector)
                 image.described[name] = self._extractor.describe(image, name, what, descriptor)
             except StageError as failure:
                 image.described[name] = failure
         return _unless_failed(image.described[name])
+
+    def _descriptor(self, name: str, detector: str) -> DescriptorStage:
+        methods = self._context.methods
+        both = f"{detector}-{name}"
+        own = both if both in methods.on_detectors else name
+        if own not in self._descriptors:
+            self._descriptors[own] = run_stage(
+                name, lambda: make_descriptor(methods, name, detector)
+            )
+        return self._descriptors[own]
 
 
 def _unless_failed(found: Found | StageError) -> Found:

@@ -15,6 +15,7 @@ from aerocues.errors import ImageError, MethodUnavailableError
 from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.methods.arrays import Features, Keypoints
 from aerocues.methods.making import DescriptorStage, DetectorStage
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 
 Result = TypeVar("Result")
 WARM_UP_SIZE = 192
@@ -91,9 +92,10 @@ def _on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> K
 class FeatureExtractor:
     """Runs detectors and descriptors, seeded, warmed up and timed one call at a time."""
 
-    def __init__(self, clock: Clock, seed: int) -> None:
+    def __init__(self, clock: Clock, seed: int, limit: KeypointLimit = ALL_KEYPOINTS) -> None:
         self._clock = clock
         self._seed = seed
+        self._limit = limit
         self._warm: set[tuple[str, str]] = set()
 
     def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
@@ -107,7 +109,8 @@ class FeatureExtractor:
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
         inner = Pixels(pixels.bgr, _inner(pixels.valid))
-        return ImageFeatures(inner, _on_valid_pixels(found, inner.valid), time)
+        kept = self._limit.keep(_on_valid_pixels(found, inner.valid), self._seed)
+        return ImageFeatures(inner, kept, time)
 
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage

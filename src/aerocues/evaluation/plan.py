@@ -113,6 +113,13 @@ class _Tally:
     ruled_out: Counter[tuple[Combination, str]] = field(default_factory=Counter)
 
 
+def _method_key(context: Context, combination: Combination) -> str:
+    parameters = context.methods.parameters(combination)
+    threshold = context.protocol.threshold(combination)
+    own = threshold != context.protocol.verification.threshold
+    return content_hash([parameters, threshold] if own else parameters)
+
+
 class _Planner:
     """Divides the work on one dataset."""
 
@@ -127,7 +134,7 @@ class _Planner:
         self._keys = keys
         self._is_present = is_present
         self._gray = {image.name for image in context.dataset.images if image.source.is_gray()}
-        self._method_keys = {c: content_hash(context.methods.parameters(c)) for c in combinations}
+        self._method_keys = {c: _method_key(context, c) for c in combinations}
         self.tally = _Tally()
 
     def unit(self, detector: str, group: Sequence[Pair]) -> Unit | None:

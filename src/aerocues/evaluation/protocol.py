@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Literal
+
+from aerocues.methods.combination import Combination
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 
 Timing = Literal["exclusive", "shared"]
 
@@ -59,16 +63,30 @@ class MeasurementProtocol:
     """How combinations are measured; recorded with every result.
 
     ``chance`` is None where no chance test is asked for. ``timing`` is ``exclusive`` where a
-    stage has the machine's core to itself, ``shared`` where several workers run at once.
+    stage has the machine's core to itself, ``shared`` where several workers run at once. ``limit``
+    is how many keypoints of an image are kept. ``thresholds`` has inlier thresholds in pixels of
+    "DETECTOR-DESCRIPTOR" that differ from the one of ``verification``.
     """
 
     seed: int = 0
     timing: Timing = "shared"
     verification: Verification = Verification()
     chance: ChanceTest | None = ChanceTest()
+    limit: KeypointLimit = ALL_KEYPOINTS
+    thresholds: Mapping[str, float] = field(default_factory=dict)
+
+    def threshold(self, combination: Combination) -> float:
+        """The inlier threshold of a combination, in pixels."""
+        both = f"{combination.detector}-{combination.descriptor}"
+        return self.thresholds.get(both, self.verification.threshold)
 
     def identity(self) -> dict[str, object]:
-        """What decides the quality columns: everything but the timing."""
+        """What decides the quality columns of all combinations: everything but the timing.
+
+        Thresholds of some combinations are part of what decides their rows.
+        """
         settings = asdict(self)
-        del settings["timing"]
+        del settings["timing"], settings["thresholds"]
+        if not self.limit.count:
+            del settings["limit"]
         return {"measurement_version": MEASUREMENT_VERSION, **settings}

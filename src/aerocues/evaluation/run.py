@@ -22,8 +22,9 @@ from aerocues.evaluation.unit import Context
 from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import preset_named
+from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -97,17 +98,22 @@ def local_engine(limits: Limits, timing: Timing) -> Engine:
     return LocalEngine(workers, limits.timeout, memory)
 
 
-def _context(dataset: Dataset, preset: str, seed: int, timing: Timing) -> Context:
-    chosen = preset_named(preset)
+def _context(
+    dataset: Dataset, preset: Preset, seed: int, timing: Timing, limit: KeypointLimit
+) -> Context:
     protocol = MeasurementProtocol(
-        seed=seed, timing=timing, chance=ChanceTest() if chosen.chance_test else None
+        seed=seed,
+        timing=timing,
+        chance=ChanceTest() if preset.chance_test else None,
+        limit=limit,
+        thresholds=preset.thresholds,
     )
     versions = software_versions()
-    settings_key = content_hash([chosen.name, protocol.identity(), versions["opencv"]])
+    settings_key = content_hash([preset.name, protocol.identity(), versions["opencv"]])
     return Context(
         dataset=dataset,
-        methods=installed_methods().with_preset(chosen),
-        preset=chosen.name,
+        methods=limit.limited(installed_methods().with_preset(preset)),
+        preset=preset.name,
         protocol=protocol,
         settings_key=settings_key,
         machine=machine_name(),
@@ -129,7 +135,9 @@ def _select(
     return select(context.methods, patterns, **kept, everything=everything)
 
 
-def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) -> dict[str, object]:
+def _facts(
+    context: Context, preset: Preset, plan: Plan, combinations: Sequence[Combination]
+) -> dict[str, object]:
     return {
         "settings_key": context.settings_key,
         "dataset": {
@@ -141,6 +149,7 @@ def _facts(context: Context, plan: Plan, combinations: Sequence[Combination]) ->
             "source": asdict(context.dataset.source) if context.dataset.source else None,
         },
         "preset": context.preset,
+        "preset_parts": asdict(preset),
         "protocol": asdict(context.protocol),
         "combinations": [str(combination) for combination in combinations],
         "exclusions": [
@@ -160,9 +169,10 @@ def run(
     detectors: str | Iterable[str] | None = None,
     descriptors: str | Iterable[str] | None = None,
     everything: bool = False,
-    preset: str = "default",
+    preset: str | Preset = "default",
     seed: int = 0,
     timing: Timing = "shared",
+    limit: KeypointLimit = ALL_KEYPOINTS,
     limits: Limits | None = None,
     retry_failed: bool = False,
     observer: Observer | None = None,
@@ -183,12 +193,14 @@ def run(
         Results folder, made where it is missing.
     detectors, descriptors, everything
         Narrow or widen the choice of combinations; see `aerocues.methods.selection.select`.
-    preset : str
-        Preset of parameters and protocol; see `aerocues.methods.presets`.
+    preset : str or Preset
+        Preset of parameters and protocol, or the file of one; see `aerocues.methods.presets`.
     seed : int
         Set before every stage call.
     timing : {"shared", "exclusive"}
         Whether several stages may run at once; quality does not depend on it.
+    limit : KeypointLimit
+        How many keypoints of an image are kept; all by default.
     limits : Limits, optional
         Workers, time and memory.
     retry_failed : bool
@@ -211,7 +223,8 @@ def run(
         dataset = open_dataset(dataset)
     observer = observer or Observer()
     engine = engine or local_engine(limits or Limits(), timing)
-    context = _context(dataset, preset, seed, timing)
+    parts = as_preset(preset)
+    context = _context(dataset, parts, seed, timing, limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
     store = Store.create(Path(output))
@@ -220,7 +233,7 @@ def run(
         plan = make_plan(context, chosen, present.__contains__, observer.hashing)
         dataset_key = content_hash([dataset.geometry, dataset.settings])
         store.write_plan(planned_table(context, dataset_key, plan.rows))
-        store.write_run(_facts(context, plan, chosen))
+        store.write_run(_facts(context, parts, plan, chosen))
         observer.planned(plan)
         _measure(engine.run(plan.units, context, observer.working), store, observer)
     return Results(store.folder)
@@ -234,14 +247,16 @@ def plan_run(
     detectors: str | Iterable[str] | None = None,
     descriptors: str | Iterable[str] | None = None,
     everything: bool = False,
-    preset: str = "default",
+    preset: str | Preset = "default",
     seed: int = 0,
     timing: Timing = "shared",
+    limit: KeypointLimit = ALL_KEYPOINTS,
     retry_failed: bool = False,
     observer: Observer | None = None,
 ) -> Plan:
     """What `run` would do with the same arguments; nothing is measured or written."""
-    context = _context(dataset, preset, seed, timing)
+    parts = as_preset(preset)
+    context = _context(dataset, parts, seed, timing, limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
     present: frozenset[str] = frozenset()

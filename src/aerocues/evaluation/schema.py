@@ -150,6 +150,9 @@ GROUND_TRUTH: tuple[Column, ...] = (
 PROVENANCE: tuple[Column, ...] = (
     _text("preset", "preset of parameters and protocol"),
     _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
+    _count("max_keypoints", "keypoints of an image that were kept at most; 0: all"),
+    _text("keypoint_choice", "which were kept: strongest, or spread over the image"),
+    Column("inlier_threshold", "float", "px", "inlier threshold of the verification"),
     _text("opencv_version", "version of OpenCV"),
     _text("machine", "processor that measured"),
     Column("seed", "integer", "", "seed set before every stage call"),

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from aerocues.datasets.dataset import Dataset, Pair, TrueView
 from aerocues.datasets.true_geometry import Located
 from aerocues.evaluation import ground_truth
@@ -44,13 +41,10 @@ class TruthComparison:
     Parameters
     ----------
     dataset : Dataset
-    verifier : Verifier
-        Estimates models as those of the same matches were.
     """
 
-    def __init__(self, dataset: Dataset, verifier: Verifier) -> None:
+    def __init__(self, dataset: Dataset) -> None:
         self._dataset = dataset
-        self._verifier = verifier
         self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
         self._depth: DepthCorrespondence | None = None
 
@@ -59,16 +53,19 @@ class TruthComparison:
         self._repeatabilities.clear()
         self._depth = None
 
-    def compare(self, row: Row, views: TwoViews, found: Matched) -> None:
-        """Add what is known: of matches, of keypoints, of a homography, of the pose."""
+    def compare(self, row: Row, views: TwoViews, found: Matched, verifier: Verifier) -> None:
+        """Add what is known: of matches, of keypoints, of a homography, of the pose.
+
+        The verifier estimates models as that of the same matches was.
+        """
         correspondence = self._correspondence(views)
         if correspondence is not None:
             self._compare_points(row, views, found, correspondence)
         if views.pair.homography is not None:
-            self._compare_homography(row, views, views.pair.homography, found)
+            self._compare_homography(row, views, found, verifier)
         true_views = self._dataset.true_views(views.pair)
         if true_views is not None:
-            self._compare_pose(row, true_views, found)
+            self._compare_pose(row, true_views, found, verifier)
 
     def _correspondence(self, views: TwoViews) -> Correspondence | None:
         pair = views.pair
@@ -97,11 +94,13 @@ class TruthComparison:
         row["gt_repeatability"] = self._repeatabilities[same]
 
     def _compare_homography(
-        self, row: Row, views: TwoViews, truth: NDArray[np.float64], found: Matched
+        self, row: Row, views: TwoViews, found: Matched, verifier: Verifier
     ) -> None:
+        truth = views.pair.homography
+        assert truth is not None
         model = run_stage(
             "estimating a homography",
-            lambda: self._verifier.homography(
+            lambda: verifier.homography(
                 found.points_1, found.points_2, found.order, row["sampling"] or "uniform"
             ),
         )
@@ -111,10 +110,12 @@ class TruthComparison:
         for threshold in PIXEL_THRESHOLDS:
             row[f"homography_auc@{threshold}"] = ground_truth.area_under_curve(error, threshold)
 
-    def _compare_pose(self, row: Row, truth: tuple[TrueView, TrueView], found: Matched) -> None:
+    def _compare_pose(
+        self, row: Row, truth: tuple[TrueView, TrueView], found: Matched, verifier: Verifier
+    ) -> None:
         first, second = truth
         points_1, points_2 = found.points_1, found.points_2
-        parameters, guided = self._verifier.sampling(row["sampling"] or "uniform")
+        parameters, guided = verifier.sampling(row["sampling"] or "uniform")
         if guided:
             points_1, points_2 = points_1[found.order], points_2[found.order]
         estimate = run_stage(

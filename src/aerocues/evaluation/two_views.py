@@ -13,7 +13,7 @@ from aerocues.evaluation.features import run_stage
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context, StageCall
-from aerocues.evaluation.verification import Verifier
+from aerocues.evaluation.verification import Verifiers
 from aerocues.methods.arrays import Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
@@ -29,8 +29,8 @@ class TwoViewMeasurement:
         self._clock = clock
         self._announce = announce
         self._matchers: dict[tuple[str, str], MatcherStage] = {}
-        self._verifier = Verifier(context.protocol, context.dataset.geometry, clock)
-        self._truth = TruthComparison(context.dataset, self._verifier)
+        self._verifiers = Verifiers(context.protocol, context.dataset.geometry, clock)
+        self._truth = TruthComparison(context.dataset)
 
     def begin_pair(self) -> None:
         """Forget what was remembered of the pair before."""
@@ -53,7 +53,7 @@ class TwoViewMeasurement:
             np.argsort(matches.distance, kind="stable"),
         )
         status = self._verify(row, views, combination, found)
-        self._truth.compare(row, views, found)
+        self._truth.compare(row, views, found, self._verifiers.of(combination))
         return status
 
     def _match(self, row: Row, views: TwoViews, combination: Combination) -> Matches:
@@ -76,8 +76,9 @@ class TwoViewMeasurement:
             return "too_few_matches"
         self._announce(_call("verify", views.pair, combination))
         what = f"verifying {combination} on {views.pair.image_1} and {views.pair.image_2}"
+        verifier = self._verifiers.of(combination)
         verdict = run_stage(
-            what, lambda: self._verifier.verify(found.points_1, found.points_2, found.order)
+            what, lambda: verifier.verify(found.points_1, found.points_2, found.order)
         )
         record_time(row, "verify_seconds", verdict.time)
         row["inliers"] = verdict.model.count

@@ -14,6 +14,7 @@ from aerocues.datasets.dataset import Geometry
 from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.evaluation.protocol import MeasurementProtocol, Verification
 from aerocues.methods.arrays import Float32Array
+from aerocues.methods.combination import Combination
 
 MINIMUM_FOR_HOMOGRAPHY = 4
 IndexArray = NDArray[np.intp]
@@ -246,3 +247,28 @@ class Verifier:
             raw = _estimate(look.find, points_1, shuffled, look.parameters)
             counts.append(_checked(*raw, len(points_1)).count)
         return counts
+
+
+class Verifiers:
+    """A verifier for each combination: their inlier thresholds may differ.
+
+    Parameters
+    ----------
+    protocol : MeasurementProtocol
+    geometry : {"homography", "epipolar"}
+    clock : Clock
+    """
+
+    def __init__(self, protocol: MeasurementProtocol, geometry: Geometry, clock: Clock) -> None:
+        self._protocol, self._geometry, self._clock = protocol, geometry, clock
+        self._made: dict[float, Verifier] = {}
+
+    def of(self, combination: Combination) -> Verifier:
+        """The verifier of a combination."""
+        protocol = self._protocol
+        threshold = protocol.threshold(combination)
+        if threshold not in self._made:
+            verification = replace(protocol.verification, threshold=threshold)
+            own = replace(protocol, verification=verification)
+            self._made[threshold] = Verifier(own, self._geometry, self._clock)
+        return self._made[threshold]

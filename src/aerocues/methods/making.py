@@ -151,9 +151,12 @@ def make_detector(methods: Methods, name: str) -> DetectorStage:
     return ArrayDetector(_plugin(row.factory, dict(row.parameters)))
 
 
-def make_descriptor(methods: Methods, name: str) -> DescriptorStage:
-    """Make the descriptor `name`; MethodUnavailableError where it cannot be made."""
-    row = methods.descriptors[name]
+def make_descriptor(methods: Methods, name: str, detector: str = "") -> DescriptorStage:
+    """Make the descriptor `name` for the keypoints of a detector.
+
+    MethodUnavailableError where it cannot be made.
+    """
+    row = methods.descriptor_on(name, detector)
     if row.origin == OPENCV:
         return OpenCVDescriptor(row)
     return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)

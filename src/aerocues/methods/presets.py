@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
 
 from aerocues.errors import SelectionError
 from aerocues.methods.parameters import Value
 
 Overrides = Mapping[str, Mapping[str, Value]]
+
+
+class Tunable(Protocol):
+    """A row of a table of methods."""
+
+    @property
+    def parameters(self) -> Mapping[str, Value]:
+        """By name, with the values of the table."""
 
 
 @dataclass(frozen=True)
@@ -22,6 +32,11 @@ class Preset:
         Whether a model must be better than those that shuffled matches give.
     detectors, descriptors : mapping of method to parameters
         What differs from the tables of methods.
+    on_detectors : mapping of "DETECTOR-DESCRIPTOR" to parameters
+        What differs for a descriptor on the keypoints of one detector: the sizes of keypoints
+        mean different things.
+    thresholds : mapping of "DETECTOR-DESCRIPTOR" to float
+        Inlier thresholds in pixels that differ from the protocol's.
     """
 
     name: str
@@ -29,19 +44,35 @@ class Preset:
     chance_test: bool
     detectors: Overrides = field(default_factory=dict)
     descriptors: Overrides = field(default_factory=dict)
+    on_detectors: Overrides = field(default_factory=dict)
+    thresholds: Mapping[str, float] = field(default_factory=dict)
 
-    def check(self, detectors: Container[str], descriptors: Container[str]) -> None:
-        """Raise SelectionError if a method is named that does not exist."""
-        for kind, overrides, known in (
-            ("detector", self.detectors, detectors),
-            ("descriptor", self.descriptors, descriptors),
-        ):
-            for name in overrides:
-                if name not in known:
-                    raise SelectionError(
-                        f"preset {self.name} sets parameters of the {kind} {name}, which does "
-                        "not exist; see 'aerocues methods'"
-                    )
+    def check(self, detectors: Mapping[str, Tunable], descriptors: Mapping[str, Tunable]) -> None:
+        """Raise SelectionError if a method or a parameter is named that does not exist."""
+        for name, parameters in self.detectors.items():
+            self._check("detector", name, detectors, parameters)
+        for name, parameters in self.descriptors.items():
+            self._check("descriptor", name, descriptors, parameters)
+        for both, parameters in (*self.on_detectors.items(), *((t, {}) for t in self.thresholds)):
+            detector, _, descriptor = both.partition("-")
+            self._check("detector", detector, detectors, {})
+            self._check("descriptor", descriptor, descriptors, parameters)
+
+    def _check(
+        self, kind: str, name: str, known: Mapping[str, Tunable], parameters: Mapping[str, Value]
+    ) -> None:
+        if name not in known:
+            raise SelectionError(
+                f"preset {self.name} sets parameters of the {kind} {name}, which does "
+                "not exist; see 'aerocues methods'"
+            )
+        own = known[name].parameters
+        for parameter in parameters:
+            if parameter not in own:
+                raise SelectionError(
+                    f"preset {self.name}: the {kind} {name} has no parameter {parameter}; it has "
+                    f"{', '.join(own) or 'none'}"
+                )
 
 
 PRESETS: tuple[Preset, ...] = (
@@ -51,9 +82,24 @@ PRESETS: tuple[Preset, ...] = (
 
 
 def preset_named(name: str) -> Preset:
-    """The preset called `name`, in any case; SelectionError where there is none."""
+    """The preset called `name`, in any case, or of the file of that path.
+
+    Raises
+    ------
+    SelectionError
+        If there is neither, or the file is no preset.
+    """
     for preset in PRESETS:
         if preset.name == name.lower():
             return preset
+    if Path(name).is_file():
+        from aerocues.methods.preset_files import read_preset
+
+        return read_preset(Path(name))
     known = ", ".join(preset.name for preset in PRESETS)
-    raise SelectionError(f"there is no preset {name!r}; choose one of {known}")
+    raise SelectionError(f"there is no preset {name!r}; choose one of {known}, or give a file")
+
+
+def as_preset(preset: str | Preset) -> Preset:
+    """A preset as it is, or by its name or file; see `preset_named`."""
+    return preset_named(preset) if isinstance(preset, str) else preset

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 from aerocues.errors import SelectionError
@@ -12,14 +12,15 @@ from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
 from aerocues.methods.matchers import MATCHERS, NORMS, MatcherRow, NormRow
 from aerocues.methods.parameters import OPENCV
-from aerocues.methods.presets import Preset
+from aerocues.methods.presets import Overrides, Preset
 
 
 @dataclass(frozen=True)
 class Methods:
     """The methods by name, in the order of the tables.
 
-    ``problems`` tells of plug-ins that are left out, one sentence each.
+    ``on_detectors`` has what differs for a descriptor on the keypoints of one detector, by
+    "DETECTOR-DESCRIPTOR". ``problems`` tells of plug-ins that are left out, one sentence each.
     """
 
     detectors: Mapping[str, DetectorRow]
@@ -27,6 +28,13 @@ class Methods:
     norms: Mapping[str, NormRow]
     matchers: Mapping[str, MatcherRow]
     problems: tuple[str, ...] = ()
+    on_detectors: Overrides = field(default_factory=dict)
+
+    def descriptor_on(self, descriptor: str, detector: str) -> DescriptorRow:
+        """The row of a descriptor as it describes the keypoints of a detector."""
+        row = self.descriptors[descriptor]
+        own = self.on_detectors.get(f"{detector}-{descriptor}")
+        return replace(row, parameters={**row.parameters, **own}) if own else row
 
     def combinations(self) -> Iterator[Combination]:
         """Every combination that can be written down, runnable or not."""
@@ -53,7 +61,7 @@ class Methods:
     def parameters(self, combination: Combination) -> dict[str, object]:
         """Everything that decides what the methods of `combination` compute."""
         detector = self.detectors[combination.detector]
-        descriptor = self.descriptors[combination.descriptor]
+        descriptor = self.descriptor_on(combination.descriptor, combination.detector)
         matcher = self.matchers[combination.matcher]
         return {
             "detector": [detector.origin, detector.factory, dict(detector.parameters)],
@@ -81,6 +89,7 @@ class Methods:
                 )
                 for name, row in self.descriptors.items()
             },
+            on_detectors={**self.on_detectors, **preset.on_detectors},
         )
 
 

@@ -14,7 +14,7 @@ from aerocues.evaluation.unit import StageCall
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_descriptor, make_detector, make_matcher
-from aerocues.methods.strongest import strongest
+from aerocues.methods.strongest import KeypointLimit
 from aerocues.reconstruction.feature_files import FeatureFiles, TimedFeatures
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.reconstruction.scene import Scene
@@ -44,7 +44,8 @@ class SceneMatcher:
         self._announce = announce
         self._files = FeatureFiles(scene, combination)
         self._clock = Clock(memory=False)
-        self._extractor = FeatureExtractor(self._clock, scene.protocol.seed)
+        limit = KeypointLimit(scene.protocol.max_keypoints)
+        self._extractor = FeatureExtractor(self._clock, scene.protocol.seed, limit)
         self._held: OrderedDict[str, Features] = OrderedDict()
         self._made: tuple[object, object] | None = None
 
@@ -81,7 +82,8 @@ class SceneMatcher:
                     combination.detector, lambda: make_detector(methods, combination.detector)
                 ),
                 run_stage(
-                    combination.descriptor, lambda: make_descriptor(methods, combination.descriptor)
+                    combination.descriptor,
+                    lambda: make_descriptor(methods, combination.descriptor, combination.detector),
                 ),
             )
         detector, descriptor = self._made
@@ -90,8 +92,6 @@ class SceneMatcher:
             combination.detector,
             detector,  # type: ignore[arg-type]
         )
-        protocol = self._scene.protocol
-        image.keypoints = strongest(image.keypoints, protocol.max_keypoints, protocol.seed)
         if not len(image.keypoints):
             row = methods.descriptors[combination.descriptor]
             nothing = np.empty((0, max(row.columns, 1)), row.dtype)

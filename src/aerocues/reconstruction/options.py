@@ -9,6 +9,7 @@ from aerocues.errors import ReconstructionError
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.run import usable_cores
 from aerocues.methods.combination import Combination
+from aerocues.methods.presets import Preset
 from aerocues.reconstruction.engine import Doing, ReconstructionLimits
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.scene import Wanted
@@ -44,7 +45,7 @@ class ReconstructionOptions:
 
     Parameters
     ----------
-    preset : str
+    preset : str or Preset
         Of parameters of the methods; with ``thesis`` pairs need not beat chance.
     protocol : ReconstructionProtocol
     wanted : Wanted
@@ -58,7 +59,7 @@ class ReconstructionOptions:
         Try again what crashed, raised an error, or ran out of time or memory.
     """
 
-    preset: str = "default"
+    preset: str | Preset = "default"
     protocol: ReconstructionProtocol = field(default_factory=ReconstructionProtocol)
     wanted: Wanted = field(default_factory=Wanted)
     reference: str | None = None

@@ -19,7 +19,7 @@ from aerocues.evaluation.versions import machine_facts, machine_name, software_v
 from aerocues.evaluation.whole_files import json_content, write_whole
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import preset_named
+from aerocues.methods.presets import as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import limited
 from aerocues.reconstruction.engine import (
@@ -111,7 +111,7 @@ def _check_scene(dataset: Dataset) -> None:
 
 
 def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Scene:
-    preset = preset_named(options.preset)
+    preset = as_preset(options.preset)
     chance = options.protocol.chance if preset.chance_test else None
     unordered = {frozenset((pair.image_1, pair.image_2)): pair for pair in reversed(dataset.pairs)}
     once = [

@@ -18,7 +18,7 @@ from aerocues.evaluation.features import (
     run_stage,
 )
 from aerocues.evaluation.unit import Context
-from aerocues.evaluation.verification import Verifier
+from aerocues.evaluation.verification import Verifiers
 from aerocues.methods.arrays import Features
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
@@ -71,8 +71,8 @@ class Drawer:
         clock = Clock(memory=False)
         self._context = context
         self._seed = context.protocol.seed
-        self._extractor = FeatureExtractor(clock, self._seed)
-        self._verifier = Verifier(context.protocol, context.dataset.geometry, clock)
+        self._extractor = FeatureExtractor(clock, self._seed, context.protocol.limit)
+        self._verifiers = Verifiers(context.protocol, context.dataset.geometry, clock)
         self._pair: Pair | None = None
         self._images: dict[tuple[str, str], ImageFeatures] = {}
 
@@ -106,7 +106,7 @@ class Drawer:
             image = self._context.dataset.image(image_name)
             self._images[key] = self._extractor.detect(image, combination.detector, detector)
         name = combination.descriptor
-        descriptor = run_stage(name, lambda: make_descriptor(methods, name))
+        descriptor = run_stage(name, lambda: make_descriptor(methods, name, combination.detector))
         if not len(self._images[key].keypoints):
             raise StageError("no_keypoints", None)
         return self._extractor.describe(self._images[key], name, name, descriptor).features
@@ -127,7 +127,8 @@ class Drawer:
         verified = len(found) >= self._context.protocol.verification.minimum_matches
         if verified:
             order = np.argsort(found.distance, kind="stable")
-            verdict = run_stage(what, lambda: self._verifier.verify(points_1, points_2, order))
+            verifier = self._verifiers.of(combination)
+            verdict = run_stage(what, lambda: verifier.verify(points_1, points_2, order))
             inliers = verdict.model.inliers
         return DrawnMatches(
             keypoints_1=first.keypoints.xy,

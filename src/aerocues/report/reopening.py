@@ -12,7 +12,8 @@ from aerocues.errors import DatasetError
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.evaluation.unit import Context
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import preset_named
+from aerocues.methods.preset_files import recorded_preset
+from aerocues.methods.strongest import KeypointLimit
 from aerocues.report.entry import ReportEntry
 
 HINT = "name their place with --images, in the form that 'aerocues run' takes"
@@ -39,12 +40,13 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
     measured = settings.get("dataset") or {}
     if settings.get("imported") or measured.get("name") != found.entry.dataset:
         raise DatasetError("the measurements were imported, and their images are not known")
-    preset = preset_named(str(settings["preset"]))
+    preset = recorded_preset(settings)
+    protocol = _protocol(settings["protocol"])
     return Context(
         dataset=_with_pairs(_dataset(found, measured, moved), found.pairs()),
-        methods=installed_methods().with_preset(preset),
+        methods=protocol.limit.limited(installed_methods().with_preset(preset)),
         preset=preset.name,
-        protocol=_protocol(settings["protocol"]),
+        protocol=protocol,
         settings_key=str(settings["settings_key"]),
         machine=found.entry.machine,
     )
@@ -91,4 +93,6 @@ def _protocol(recorded: Mapping[str, Any]) -> MeasurementProtocol:
         timing=recorded["timing"],
         verification=Verification(**recorded["verification"]),
         chance=ChanceTest(**chance) if chance else None,
+        limit=KeypointLimit(**recorded.get("limit", {})),
+        thresholds=recorded.get("thresholds", {}),
     )

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.preset_files import preset_of, read_preset, recorded_preset, write_preset
+from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.registry import Methods
+
+MINE = Preset(
+    "mine",
+    "of my own",
+    chance_test=True,
+    detectors={"ORB": {"nlevels": 8}},
+    descriptors={"LATCH": {"bytes": 32}},
+    on_detectors={"ORB-BEBLID": {"scale_factor": 1.0}},
+    thresholds={"ORB-ORB": 1.5},
+)
+
+
+def test_a_preset_is_read_as_it_was_written(tmp_path: Path) -> None:
+    path = tmp_path / "mine.json"
+    write_preset(path, MINE, {"by": "hand"})
+    assert read_preset(path) == MINE
+    assert preset_named(str(path)) == MINE
+    assert json.loads(path.read_text())["made"] == {"by": "hand"}
+    assert [each.name for each in tmp_path.iterdir()] == ["mine.json"]
+
+
+def test_a_file_needs_only_what_differs_and_is_called_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "small.json"
+    path.write_text('{"detectors": {"FAST": {"threshold": 12}}}')
+    preset = read_preset(path)
+    assert (preset.name, preset.chance_test) == ("small", True)
+    assert preset.detectors == {"FAST": {"threshold": 12}}
+
+
+def test_parameters_of_a_descriptor_may_depend_on_the_detector(methods: Methods) -> None:
+    changed = methods.with_preset(MINE)
+    assert changed.descriptor_on("BEBLID", "ORB").parameters["scale_factor"] == 1.0
+    assert changed.descriptor_on("BEBLID", "FAST").parameters["scale_factor"] == 6.25
+    orb, fast = (Combination.parse(f"{name}-BEBLID-HAM-BF") for name in ("ORB", "FAST"))
+    assert changed.parameters(orb) != methods.parameters(orb)
+    assert changed.parameters(fast) == methods.parameters(fast)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("nonsense", "cannot read the preset"),
+        ("[1]", "is no preset: it must hold an object"),
+        ('{"detector": {}}', "detector is unknown; a preset has name, title"),
+        ('{"detectors": {"ORB": 5}}', "detectors must hold methods, each with parameters"),
+        ('{"thresholds": {"ORB-ORB": -1}}', "thresholds must hold pixels"),
+        ('{"name": "thesis"}', "thesis is the name of another preset"),
+    ],
+)
+def test_what_is_no_preset_is_told_in_a_line(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / "p.json"
+    path.write_text(text)
+    with pytest.raises(SelectionError, match=told):
+        preset_named(str(path))
+
+
+@pytest.mark.parametrize(
+    ("parts", "told"),
+    [
+        ({"detectors": {"ORB": {"levels": 8}}}, "ORB has no parameter levels; it has nfeatures"),
+        ({"on_detectors": {"ORB-SURF": {"a": 1}}}, "the descriptor SURF, which does not exist"),
+        ({"on_detectors": {"ORB-LUCID": {"a": 1}}}, "LUCID has no parameter a; it has lucid_"),
+        ({"thresholds": {"SURF-ORB": 1.0}}, "the detector SURF, which does not exist"),
+    ],
+)
+def test_what_no_method_has_is_refused(methods: Methods, parts: dict[str, Any], told: str) -> None:
+    with pytest.raises(SelectionError, match=told):
+        methods.with_preset(preset_of({"name": "odd", **parts}, "odd.json"))
+
+
+def test_a_run_remembers_its_preset_whole() -> None:
+    from dataclasses import asdict
+
+    for preset in (MINE, *PRESETS):
+        assert recorded_preset({"preset": preset.name, "preset_parts": asdict(preset)}) == preset
+    assert recorded_preset({"preset": "thesis"}) == preset_named("thesis")
