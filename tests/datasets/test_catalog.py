@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from aerocues.datasets.catalog import CATALOG, open_dataset
+from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Source
+from aerocues.datasets.kinds import CATALOG
 from aerocues.errors import DatasetError
 
 
@@ -13,7 +14,7 @@ def test_the_catalog_is_complete() -> None:
     names = [kind.name for kind in CATALOG]
     assert names == [
         "synthetic", "synthetic-extended", "oxford", "hpatches", "uav", "flight", "simulated",
-        "folder",
+        "airsim", "folder",
     ]  # fmt: skip
     for kind in CATALOG:
         assert all([kind.pairs, kind.ground_truth, kind.needs, kind.layout, kind.where, kind.terms])

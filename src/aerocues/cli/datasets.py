@@ -78,7 +78,7 @@ def _print_table() -> None:
     from rich.text import Text
 
     from aerocues.cli.console import plain_table, print_table, standard_output
-    from aerocues.datasets.catalog import CATALOG
+    from aerocues.datasets.kinds import CATALOG
 
     table = plain_table("", "")
     for kind in CATALOG:
@@ -98,7 +98,7 @@ def _print_json() -> None:
     import json
     from dataclasses import fields
 
-    from aerocues.datasets.catalog import CATALOG
+    from aerocues.datasets.kinds import CATALOG
 
     rows = [
         {field.name: getattr(kind, field.name) for field in fields(kind) if field.name != "load"}

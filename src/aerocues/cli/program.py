@@ -10,6 +10,7 @@ from typing import Annotated, Any, cast
 import typer
 
 from aerocues.cli import (
+    airsim,
     compare,
     datasets,
     importing,
@@ -49,6 +50,7 @@ app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
 app.command("simulate")(simulate.simulate)
+app.add_typer(airsim.app, name="airsim")
 app.add_typer(methods.app, name="methods")
 app.add_typer(datasets.app, name="datasets")
 

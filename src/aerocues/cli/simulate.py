@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from aerocues.cli.console import count
 
 if TYPE_CHECKING:
     from aerocues.simulation.flight import Settings
@@ -58,8 +59,8 @@ def simulate(
     from aerocues.simulation.lighting import Weather
     from aerocues.simulation.sensor import Sensor
 
-    width, height = _numbers(size, "x", "--size", "1000x665")
-    azimuth, elevation = _numbers(sun, ",", "--sun", "140,48")
+    width, height = numbers(size, "x", "--size", "1000x665")
+    azimuth, elevation = numbers(sun, ",", "--sun", "140,48")
     settings = Settings(
         scene=scene,
         seed=seed,
@@ -76,32 +77,18 @@ def simulate(
 
 
 def _fly(folder: Path, spec: str, settings: Settings, subset: str | None) -> None:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    from aerocues.cli.console import count
-    from aerocues.cli.interruption import Interrupted, interruptible
+    from aerocues.cli.flying import show
     from aerocues.simulation.flight import shots_in
     from aerocues.simulation.flight import simulate as fly
     from aerocues.simulation.planner import open_survey
 
     survey = open_survey(spec, settings.camera)
     total = len(shots_in(survey, subset, settings.form))
-    finished = 0
-
-    def tell(done: int, total: int) -> None:
-        nonlocal finished
-        finished = done
-        bars.update(task, completed=done, total=total)
-
-    try:
-        with interruptible(), Progress(console=Console(stderr=True)) as bars:
-            task = bars.add_task(f"{settings.scene}, {survey.name}", total=total)
-            flown = fly(folder, survey, settings, tell, subset)
-    except Interrupted as interruption:
-        kept = f"{finished} of {total} images are there"
-        sys.stderr.write(f"interrupted; {kept}; run the same command again to go on\n")
-        raise typer.Exit(interruption.exit_code) from None
+    flown = show(
+        f"{settings.scene}, {survey.name}",
+        total,
+        lambda tell: fly(folder, survey, settings, tell, subset),
+    )
     kept = f", {flown.kept} kept" if flown.kept else ""
     typer.echo(
         f"{count(flown.rendered, 'image')} rendered{kept} in {folder}; "
@@ -109,7 +96,8 @@ def _fly(folder: Path, spec: str, settings: Settings, subset: str | None) -> Non
     )
 
 
-def _numbers(text: str, mark: str, option: str, example: str) -> tuple[float, float]:
+def numbers(text: str, mark: str, option: str, example: str) -> tuple[float, float]:
+    """Two numbers with a mark between them, as an option has them."""
     try:
         first, second = (float(part) for part in text.lower().split(mark))
     except ValueError as error:

@@ -112,7 +112,7 @@ def simulate(
     survey : Survey
     settings : Settings
     progress : callable, optional
-        Called with the number of finished images and of all.
+        Called with the number of finished images and of all, first when work begins.
     subset : str, optional
         Render only the images whose name or folder matches one of these globs, separated by commas;
         the poses are those of the whole survey.
@@ -135,6 +135,8 @@ def simulate(
     place.keep(keys)
     write_poses(place.truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
     write_json(place.truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
+    if progress is not None:
+        progress(0, len(chosen))
     studio, rendered = _Studio(settings, half), 0
     for done, number in enumerate(chosen, start=1):
         name, pose = names[number], survey.shots[number].pose

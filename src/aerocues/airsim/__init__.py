@@ -1,0 +1,1 @@
+"""Flights in AirSim and Cosys-AirSim: images and ground truth, collected over their protocol."""
