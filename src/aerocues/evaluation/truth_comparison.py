@@ -115,7 +115,7 @@ class TruthComparison:
     ) -> None:
         first, second = truth
         points_1, points_2 = found.points_1, found.points_2
-        parameters, guided = verifier.sampling(row["sampling"] or "uniform")
+        parameters, guided = verifier.pose_parameters(row["sampling"] or "uniform")
         if guided:
             points_1, points_2 = points_1[found.order], points_2[found.order]
         estimate = run_stage(
