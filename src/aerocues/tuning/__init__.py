@@ -1,0 +1,1 @@
+"""Finding the best combination for a small part of the cost of measuring all."""

@@ -1,0 +1,253 @@
+"""A race for the highest CUES: a cheap look, then more pairs for those that can still win.
+
+The cheapest combinations are measured on a pair of each block. From what is measured a model
+tells what to expect of the rest, and how sure that is; tables drawn from it are scored, and the
+combinations that come out on top are measured next, the cheaper and less measured ones first
+(Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm identification", 2020).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.aggregation import aggregate
+from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.settings import ScoreSettings
+from aerocues.scoring.weights import weights_by_method
+from aerocues.tuning.scales import Array, Mask, Scales
+from aerocues.tuning.surrogate import Surrogate, fit
+
+Cell = tuple[int, int]
+Ended = Literal["budget", "sure", "measured"]
+FEW = 5
+_MOST_BLOCKS = 8
+_FEWEST_PAIRS = 2
+
+
+class Arena(Protocol):
+    """Where combinations compete."""
+
+    alternatives: Sequence[str]
+    components: Mapping[str, Sequence[str]]
+    """The methods of each alternative, by what they are: detector, descriptor, matcher."""
+    blocks: NDArray[np.int64]
+    """(P,) scene or sequence of each pair."""
+    criteria: Sequence[Criterion]
+    predicted_seconds: Array
+    """(A,) roughly what an alternative costs on a pair."""
+    spent: float
+    """Seconds that all measurements so far took."""
+
+    def measure(self, cells: Sequence[Cell]) -> Array:
+        """Values (N, C) of alternatives on pairs; a row of NaN where one failed."""
+
+
+@dataclass(frozen=True)
+class RaceSettings:
+    """How a race is run.
+
+    Parameters
+    ----------
+    budget : float
+        Seconds of the arena.
+    seed : int
+    sure : float
+        Probability of the leader at which the race ends.
+    look : float
+        Share of the alternatives, the cheapest, that are looked at first.
+    draws : int
+        Tables drawn in a round.
+    batch : int
+        Measurements of a round.
+    score : ScoreSettings
+    """
+
+    budget: float
+    seed: int = 0
+    sure: float = 1.0
+    look: float = 0.25
+    draws: int = 24
+    batch: int = 16
+    score: ScoreSettings = ScoreSettings()  # noqa: RUF009 - it is frozen
+
+
+@dataclass(frozen=True)
+class Round:
+    """How a race stood after a round: seconds spent, cells measured, the leader and its chance."""
+
+    spent: float
+    measured: int
+    leader: str
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
+class RaceOutcome:
+    """How a race ended.
+
+    Parameters
+    ----------
+    scores : (A,) float64
+        CUES that are expected of a full measurement.
+    probability : (A,) float64
+        Share of the last draws in which an alternative was the best.
+    known : (A, P) bool
+        What was measured.
+    ended : {"budget", "sure", "measured"}
+        Why: the budget was spent, the leader was sure enough, or nothing was left to measure.
+    rounds : list of Round
+    """
+
+    scores: Array
+    probability: Array
+    known: Mask
+    ended: Ended
+    rounds: list[Round] = field(default_factory=list)
+
+    @property
+    def order(self) -> NDArray[np.intp]:
+        """Positions of the alternatives, the best first."""
+        return np.argsort(-self.scores, kind="stable")
+
+
+def race(arena: Arena, settings: RaceSettings) -> RaceOutcome:
+    """Run a race; the same arena and seed give the same answer.
+
+    Raises
+    ------
+    ScoreError
+        If there is nothing to choose from, or nothing that was looked at succeeded.
+    """
+    if len(arena.alternatives) < 2 or not len(arena.blocks):
+        raise ScoreError("a race needs two alternatives and a pair; give more")
+    return _Race(arena, settings).run()
+
+
+class _Race:
+    def __init__(self, arena: Arena, settings: RaceSettings) -> None:
+        self._arena, self._settings = arena, settings
+        self._rng = np.random.default_rng(settings.seed)
+        shape = (len(arena.alternatives), len(arena.blocks))
+        self._known = np.zeros(shape, np.bool_)
+        self._values = np.full((*shape, len(arena.criteria)), np.nan)
+        self._is_cost = np.array([each.better == "lower" for each in arena.criteria])
+        self._features = _features(arena.components)
+        self._order = _spread_order(arena.blocks, self._rng)
+        self._rounds: list[Round] = []
+
+    def run(self) -> RaceOutcome:
+        self._measure(self._first_look())
+        while True:
+            surrogate, scales = self._fit()
+            scores, drawn = self._score(surrogate, scales)
+            best = np.argmax(drawn, axis=1)
+            probability = np.bincount(best, minlength=len(scores)) / len(drawn)
+            leader = int(np.argmax(scores))
+            names = self._arena.alternatives
+            spent, chance = self._arena.spent, float(probability[leader])
+            self._rounds.append(Round(spent, int(self._known.sum()), names[leader], chance))
+            ended = self._ended(chance)
+            cells = self._next(drawn, probability)
+            if ended is None and not cells:
+                ended = "measured"
+            if ended is not None:
+                return RaceOutcome(scores, probability, self._known, ended, self._rounds)
+            self._measure(cells)
+
+    def _ended(self, chance: float) -> Ended | None:
+        if self._arena.spent >= self._settings.budget:
+            return "budget"
+        return "sure" if chance >= self._settings.sure < 1.0 else None
+
+    def _first_look(self) -> list[Cell]:
+        count = max(round(self._settings.look * len(self._known)), 2)
+        cheapest = np.argsort(self._arena.predicted_seconds, kind="stable")[:count]
+        blocks = len(np.unique(self._arena.blocks))
+        pairs = self._order[: max(min(blocks, _MOST_BLOCKS), _FEWEST_PAIRS)]
+        return [(int(a), int(p)) for p in pairs for a in cheapest]
+
+    def _measure(self, cells: Sequence[Cell]) -> None:
+        for start in range(0, len(cells), self._settings.batch):
+            if start and self._arena.spent >= self._settings.budget:
+                return
+            batch = list(cells[start : start + self._settings.batch])
+            values = self._arena.measure(batch)
+            for (alternative, pair), row in zip(batch, values, strict=True):
+                self._values[alternative, pair] = row
+                self._known[alternative, pair] = True
+
+    def _fit(self) -> tuple[Surrogate, Scales]:
+        measured = self._values[self._known]
+        if np.isnan(measured).all(axis=0).any():
+            raise ScoreError(
+                "every combination failed on the first pairs; look whether the images overlap"
+            )
+        scales = Scales.of(measured, self._is_cost)
+        stretched = scales.stretch(self._values)
+        return fit(stretched, self._known, self._features, self._arena.blocks), scales
+
+    def _score(self, surrogate: Surrogate, scales: Scales) -> tuple[Array, Array]:
+        """CUES (A,) expected, and (draws, A) of drawn tables; under the same bounds and weights."""
+        settings = self._settings
+        whole = scales.shrink(surrogate.expected)
+        low, high = whole.min(axis=(0, 1)), whole.max(axis=(0, 1))
+        width = np.where(high > low, high - low, 1.0)
+
+        def normalised(values: Array) -> Array:
+            share = (values.mean(axis=1) - low) / width
+            upright = np.where(self._is_cost, 1.0 - share, share)
+            powered: Array = np.clip(upright, 0.0, 1.0) ** settings.score.alpha
+            return powered
+
+        matrix = normalised(whole)
+        by_method = weights_by_method(matrix[None], settings.score.weights)
+        weights = aggregate(by_method, settings.score.aggregation)[0]
+        drawn = []
+        for _ in range(settings.draws):
+            values = np.where(
+                self._known[..., None], whole, scales.shrink(surrogate.draw(self._rng))
+            )
+            drawn.append(normalised(values) @ weights)
+        return np.asarray(matrix @ weights), np.array(drawn)
+
+    def _next(self, drawn: Array, probability: Array) -> list[Cell]:
+        """The next pair of those that may be the best, or among the few best."""
+        few = np.argsort(-drawn, axis=1, kind="stable")[:, :FEW]
+        among = np.bincount(few.ravel(), minlength=drawn.shape[1]) / len(drawn)
+        counts = self._known.sum(axis=1)
+        interest = (probability + among) / np.sqrt(
+            (counts + 1.0) * np.maximum(self._arena.predicted_seconds, 1e-9)
+        )
+        chosen: list[Cell] = []
+        for alternative in np.argsort(-interest, kind="stable"):
+            left = [pair for pair in self._order if not self._known[alternative, pair]]
+            if interest[alternative] > 0 and left:
+                chosen.append((int(alternative), int(left[0])))
+            if interest[alternative] <= 0 or len(chosen) == self._settings.batch:
+                break
+        return chosen
+
+
+def _features(components: Mapping[str, Sequence[str]]) -> Array:
+    """(A, K): 1 for each method that an alternative is made of."""
+    columns = [
+        [float(label == name) for label in labels]
+        for labels in components.values()
+        for name in sorted(set(labels))
+    ]
+    return np.array(columns).T
+
+
+def _spread_order(blocks: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.intp]:
+    """Pairs in random order, one of each block, then the second of each, and so on."""
+    place = np.zeros(len(blocks), np.intp)
+    for block in np.unique(blocks):
+        members = np.flatnonzero(blocks == block)
+        place[rng.permutation(members)] = np.arange(len(members))
+    return np.lexsort((rng.permutation(len(blocks)), place))

@@ -1,0 +1,52 @@
+"""Scales on which effects of methods and pairs add up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+_SMALL = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """How values of each criterion are stretched: shares by the arcsine, the rest by a logarithm.
+
+    Parameters
+    ----------
+    share : (C,) bool
+        Whether the values are shares, from 0 to 1.
+    offset : (C,) float64
+        Added before the logarithm, so that 0 has one.
+    worst : (C,) float64
+        What a failure counts as.
+    """
+
+    share: Mask
+    offset: Array
+    worst: Array
+
+    @classmethod
+    def of(cls, values: Array, is_cost: Mask) -> Scales:
+        """The scales that suit (N, C) measured values; NaN where a measurement failed."""
+        share = (np.nanmin(values, axis=0) >= 0) & (np.nanmax(values, axis=0) <= 1)
+        offset = _SMALL * np.nanmedian(np.abs(values), axis=0) + np.finfo(np.float64).tiny
+        worst = np.where(is_cost, np.nanmax(values, axis=0), np.nanmin(values, axis=0))
+        return cls(share, offset, np.where(share & ~is_cost, 0.0, worst))
+
+    def stretch(self, values: Array) -> Array:
+        """(..., C) values on their scales; failures count as the worst."""
+        known = np.where(np.isnan(values), self.worst, values)
+        turned = np.arcsin(np.sqrt(np.clip(known, 0.0, 1.0)))
+        grown = np.log(np.maximum(known, 0.0) + self.offset)
+        return np.where(self.share, turned, grown)
+
+    def shrink(self, stretched: Array) -> Array:
+        """(..., C) values from their scales."""
+        turned = np.sin(np.clip(stretched, 0.0, np.pi / 2)) ** 2
+        grown = np.exp(np.clip(stretched, -50.0, 50.0)) - self.offset
+        return np.where(self.share, turned, np.maximum(grown, 0.0))

@@ -1,0 +1,124 @@
+"""What is expected of measurements that were not made, from those that were.
+
+Values add up, on their scales, from the effects of detector, descriptor and matcher (over all, and
+in each block of pairs), of the combination itself (likewise) and of the pair: a mixed linear model,
+fitted by backfitting with ridge penalties in place of variances (Hastie, Tibshirani and Friedman,
+"The Elements of Statistical Learning", 2009, section 9.1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.tuning.scales import Array, Mask
+
+_ROUNDS = 4
+# Penalties: how many measurements an effect needs to count half.
+_OF_METHODS, _OF_METHODS_IN_BLOCK = 1.0, 4.0
+_OF_ALTERNATIVE, _OF_ALTERNATIVE_IN_BLOCK = 0.5, 1.0
+_OF_PAIR = 1.0
+_SPREAD_IN_BLOCK = 0.7
+"""How much combinations differ from block to block, over how much they differ at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surrogate:
+    """The fitted model.
+
+    Parameters
+    ----------
+    expected : (A, P, C) float64
+        On the scales of `Scales`; measured cells included.
+    counts : (A,) int
+        Measured cells of each alternative.
+    counts_in_block : (A, B) int
+    block_of : (P,) int
+        Positions of the blocks of pairs, from 0.
+    residuals : (N, C) float64
+        What methods and pairs leave unexplained of measured cells.
+    """
+
+    expected: Array
+    counts: NDArray[np.intp]
+    counts_in_block: NDArray[np.intp]
+    block_of: NDArray[np.intp]
+    residuals: Array
+
+    def draw(self, rng: np.random.Generator) -> Array:
+        """(A, P, C) of what may be true of cells that were not measured.
+
+        An alternative departs from what its methods lead one to expect as measured ones do, the
+        less the more it was measured; all criteria of one cell together, as they belong together.
+        """
+        alternatives, blocks = self.counts_in_block.shape
+        pool = self.residuals
+        own = pool[rng.integers(len(pool), size=alternatives)]
+        own = own * np.sqrt(1.0 / (self.counts + 1.0))[:, None]
+        there = pool[rng.integers(len(pool), size=(alternatives, blocks))]
+        there = there * np.sqrt(1.0 / (self.counts_in_block + 1.0))[..., None]
+        shift = own[:, None] + _SPREAD_IN_BLOCK * there
+        drawn: Array = self.expected + shift[:, self.block_of]
+        return drawn
+
+
+def fit(stretched: Array, known: Mask, features: Array, blocks: NDArray[np.int64]) -> Surrogate:
+    """Fit the model to the cells that are known.
+
+    Parameters
+    ----------
+    stretched : (A, P, C) float64
+        On their scales; read where known only.
+    known : (A, P) bool
+    features : (A, K) float64
+        1 for each method that an alternative is made of.
+    blocks : (P,) int64
+    """
+    names, block_of = np.unique(blocks, return_inverse=True)
+    a, p = np.nonzero(known)
+    values, own, b = stretched[a, p], features[a], block_of[p]
+    shape = (known.shape[0], len(names), values.shape[1])
+    counts = known.sum(axis=1)
+    counts_in_block = np.zeros(shape[:2], np.intp)
+    np.add.at(counts_in_block, (a, b), 1)
+    mean = values.mean(axis=0)
+    pairs = np.zeros((known.shape[1], shape[2]))
+    alternative, in_block = np.zeros((shape[0], shape[2])), np.zeros(shape)
+    methods_in_block = np.zeros(shape)
+    expected = np.zeros(shape)
+    for _ in range(_ROUNDS):
+        rest = values - mean - pairs[p] - alternative[a] - in_block[a, b]
+        methods = features @ _ridge(own, rest - methods_in_block[a, b], _OF_METHODS)
+        rest = rest - methods[a]
+        for block in range(shape[1]):
+            of_block = b == block
+            coefficients = _ridge(own[of_block], rest[of_block], _OF_METHODS_IN_BLOCK)
+            methods_in_block[:, block] = features @ coefficients
+        expected = mean + methods[:, None] + methods_in_block
+        rest = values - expected[a, b] - pairs[p]
+        alternative = _summed(rest - in_block[a, b], a, shape[0])
+        alternative /= (counts + _OF_ALTERNATIVE)[:, None]
+        in_block = np.zeros(shape)
+        np.add.at(in_block, (a, b), rest - alternative[a])
+        in_block /= (counts_in_block + _OF_ALTERNATIVE_IN_BLOCK)[..., None]
+        rest = values - expected[a, b] - alternative[a] - in_block[a, b]
+        pairs = _summed(rest, p, len(pairs)) / (known.sum(axis=0) + _OF_PAIR)[:, None]
+    whole = (expected + alternative[:, None] + in_block)[:, block_of] + pairs
+    whole[a, p] = values
+    residuals = values - expected[a, b] - pairs[p]
+    return Surrogate(whole, counts, counts_in_block, block_of, residuals)
+
+
+def _ridge(features: Array, values: Array, penalty: float) -> Array:
+    size = features.shape[1]
+    return np.asarray(
+        np.linalg.solve(features.T @ features + penalty * np.eye(size), features.T @ values)
+    )
+
+
+def _summed(values: Array, group: NDArray[np.intp], groups: int) -> Array:
+    total = np.zeros((groups, values.shape[1]))
+    np.add.at(total, group, values)
+    return total

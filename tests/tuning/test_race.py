@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aerocues.errors import ScoreError
+from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.cues import score
+from aerocues.scoring.table import DecisionTable
+from aerocues.tuning.race import RaceOutcome, RaceSettings, race
+from aerocues.tuning.replay import ReplayArena
+from aerocues.tuning.scales import Scales
+
+CRITERIA = (Criterion("precision"), Criterion("inliers"), Criterion("seconds", "lower"))
+DETECTORS, DESCRIPTORS, MATCHERS = "abcdef", "uvwxyz", "mn"
+
+
+def arena(seed: int = 0, pairs: int = 24, blocks: int = 3, failing: float = 0.02) -> ReplayArena:
+    """72 alternatives whose values come from their methods, themselves, blocks and pairs."""
+    rng = np.random.default_rng(seed)
+    names = [(d, e, m) for d in DETECTORS for e in DESCRIPTORS for m in MATCHERS]
+    of = [np.array([group.index(n[i]) for n in names]) for i, group in enumerate(
+        (DETECTORS, DESCRIPTORS, MATCHERS))]  # fmt: skip
+    quality = rng.normal(0, 0.5, 6)[of[0]] + rng.normal(0, 0.5, 6)[of[1]]
+    quality = quality + rng.normal(0, 0.2, len(names))
+    block = np.arange(pairs) * blocks // pairs
+    there = quality[:, None] + rng.normal(0, 0.3, (len(names), blocks))[:, block]
+    there = there + rng.normal(0, 0.4, pairs) + rng.normal(0, 0.15, (len(names), pairs))
+    precision = 1 / (1 + np.exp(-there))
+    seconds = np.exp(rng.normal(0, 0.8, 6)[of[0]] + rng.normal(0, 0.8, 6)[of[1]] + 0.5 * of[2])
+    time = np.tile(seconds[:, None], (1, pairs))
+    values = np.stack([precision, 4000 * precision, time / precision], axis=-1)
+    values[rng.random((len(names), pairs)) < failing] = np.nan
+    components = {
+        what: [name[i] for name in names]
+        for i, what in enumerate(("detector", "descriptor", "matcher"))
+    }
+    labels = ["-".join(name) for name in names]
+    return ReplayArena(labels, components, CRITERIA, values, block, time, seconds)
+
+
+def full_scores(arena: ReplayArena) -> np.ndarray:
+    cells = [(a, p) for a in range(len(arena.alternatives)) for p in range(len(arena.blocks))]
+    values = arena.measure(cells).reshape(len(arena.alternatives), len(arena.blocks), -1)
+    return score(DecisionTable.from_values(values, arena.alternatives, CRITERIA)).scores
+
+
+def run(seed: int = 0, share: float = 0.15, **settings: float) -> tuple[ReplayArena, RaceOutcome]:
+    place = arena()
+    chosen = replace(RaceSettings(share * place.total, seed), **settings)  # type: ignore[arg-type]
+    return place, race(place, chosen)
+
+
+def test_a_race_finds_the_best_for_a_part_of_the_cost() -> None:
+    truth = full_scores(arena())
+    regrets = []
+    for seed in range(5):
+        place, outcome = run(seed)
+        assert outcome.ended == "budget"
+        assert place.spent < 0.2 * place.total
+        regrets.append(truth.max() - truth[outcome.order[0]])
+    assert np.median(regrets) < 0.01
+    assert max(regrets) < 0.06
+
+
+def test_what_is_measured_whole_is_scored_as_it_is() -> None:
+    place = arena(pairs=4, blocks=2)
+    outcome = race(place, RaceSettings(budget=10 * place.total))
+    truth = full_scores(arena(pairs=4, blocks=2))
+    # Once those that can win are measured on all pairs, their order is that of the truth.
+    assert outcome.ended == "measured"
+    assert outcome.order[0] == int(np.nanargmax(truth))
+    assert outcome.probability[outcome.order[0]] == 1.0
+
+
+def test_a_clear_winner_ends_the_race() -> None:
+    place, outcome = run(share=5.0, sure=0.9)
+    assert outcome.ended == "sure"
+    assert place.spent < place.total
+    assert outcome.rounds[-1].probability >= 0.9
+    assert outcome.rounds[-1].leader == place.alternatives[outcome.order[0]]
+
+
+def test_the_same_seed_gives_the_same_race() -> None:
+    first, second = run(3)[1], run(3)[1]
+    np.testing.assert_array_equal(first.scores, second.scores)
+    np.testing.assert_array_equal(first.known, second.known)
+    assert first.rounds == second.rounds
+    assert (run(4)[1].known != first.known).any()
+
+
+def test_the_first_look_sees_every_block() -> None:
+    _, outcome = run(share=0.02)
+    seen = outcome.known.any(axis=0).reshape(3, 8)
+    assert seen.any(axis=1).all()
+
+
+def test_nothing_to_choose_from_and_nothing_that_works() -> None:
+    place = arena(failing=1.1)
+    with pytest.raises(ScoreError, match="every combination failed on the first pairs"):
+        race(place, RaceSettings(budget=1.0))
+    lonely = arena()
+    lonely.alternatives = ["a-u-m"]
+    with pytest.raises(ScoreError, match="a race needs two alternatives"):
+        race(lonely, RaceSettings(budget=1.0))
+
+
+def test_sharing_costs_once() -> None:
+    place = arena()
+    place.measure([(0, 0)])
+    alone = place.spent
+    place.measure([(1, 0)])  # the same detector and descriptor, another matcher
+    assert place.spent - alone < 0.7 * alone * np.exp(0.5)
+    again = arena()
+    full_scores(again)
+    assert again.spent == pytest.approx(again.total)
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e6))
+def test_values_come_back_from_their_scales(seed: int, size: float) -> None:
+    rng = np.random.default_rng(seed)
+    values = np.column_stack([rng.random(20), size * rng.random(20) + 1e-3 * size])
+    scales = Scales.of(values, np.array([False, True]))
+    np.testing.assert_allclose(scales.shrink(scales.stretch(values)), values, rtol=1e-6)
+    failed = scales.shrink(scales.stretch(np.full((1, 2), np.nan)))
+    np.testing.assert_allclose(failed[0], [0.0, values[:, 1].max()], rtol=1e-6, atol=1e-12)
