@@ -45,7 +45,9 @@ def arena(seed: int = 0, pairs: int = 24, blocks: int = 3, failing: float = 0.02
 
 def full_scores(arena: ReplayArena) -> np.ndarray:
     cells = [(a, p) for a in range(len(arena.alternatives)) for p in range(len(arena.blocks))]
-    values = arena.measure(cells).reshape(len(arena.alternatives), len(arena.blocks), -1)
+    found = arena.measure(cells)
+    values = np.array([found[cell] for cell in cells])
+    values = values.reshape(len(arena.alternatives), len(arena.blocks), -1)
     return score(DecisionTable.from_values(values, arena.alternatives, CRITERIA)).scores
 
 

@@ -11,8 +11,11 @@ TYPICAL_MEGAPIXELS = 0.6
 FLANN_SECONDS_PER_KEYPOINT = 1e-4
 
 
-def _match_seconds(methods: Methods, combination: Combination, keypoints: float) -> float:
-    """Measured on OpenCV's matchers: nanoseconds a pair of descriptors grow with their length."""
+def match_seconds(methods: Methods, combination: Combination, keypoints: float) -> float:
+    """CPU seconds to match images with so many keypoints.
+
+    Measured on OpenCV's matchers: nanoseconds a pair of descriptors grow with their length.
+    """
     if combination.matcher != "BF":
         return FLANN_SECONDS_PER_KEYPOINT * keypoints
     row = methods.descriptors[combination.descriptor]
@@ -31,5 +34,5 @@ def estimate_pair_seconds(
     return (
         row.seconds_per_megapixel * TYPICAL_MEGAPIXELS
         + describing * 1e-6 * keypoints
-        + sum(_match_seconds(methods, combination, keypoints) for combination in combinations)
+        + sum(match_seconds(methods, combination, keypoints) for combination in combinations)
     )

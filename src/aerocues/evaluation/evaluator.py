@@ -9,6 +9,7 @@ import cv2
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.clock import Clock
+from aerocues.evaluation.feature_cache import FeatureCache
 from aerocues.evaluation.features import (
     Described,
     FeatureExtractor,
@@ -30,7 +31,6 @@ from aerocues.methods.making import (
 )
 
 Found = TypeVar("Found")
-ImageCache = dict[str, ImageFeatures | StageError]
 
 
 class Evaluator:
@@ -50,34 +50,37 @@ class Evaluator:
         self._announce = announce
         self._extractor = FeatureExtractor(clock, context.protocol.seed, context.protocol.limit)
         self._two_views = TwoViewMeasurement(context, clock, announce)
+        self._cache = FeatureCache()
         self._detectors: dict[str, DetectorStage] = {}
         self._descriptors: dict[str, DescriptorStage] = {}
 
     def evaluate(self, unit: Unit) -> Iterator[list[Row]]:
         """The rows of each pair of a unit, in the order of its work.
 
-        An image's features are kept until the last pair of the unit that needs them.
+        An image's features are kept until the last pair of the unit that needs them, and beyond,
+        for other units, as long as there is room.
         """
         pairs = [self._context.dataset.pair(work.pair) for work in unit.work]
-        last = {name: i for i, pair in enumerate(pairs) for name in (pair.image_1, pair.image_2)}
-        cache: ImageCache = {}
         for position, (pair, work) in enumerate(zip(pairs, unit.work, strict=True)):
-            yield list(self._evaluate_pair(unit.detector, pair, work, cache))
-            for name in {pair.image_1, pair.image_2}:
-                if last[name] == position:
-                    del cache[name]
+            yield list(self._evaluate_pair(unit.detector, pair, work))
+            left = pairs[position + 1 :]
+            names = {name for later in left for name in (later.image_1, later.image_2)}
+            self._cache.trim(frozenset((unit.detector, name) for name in names))
 
-    def _evaluate_pair(
-        self, detector: str, pair: Pair, work: PairWork, cache: ImageCache
-    ) -> Iterator[Row]:
+    def _image(self, detector: str, name: str, pair: Pair) -> ImageFeatures | StageError:
+        found = self._cache.get((detector, name))
+        if found is None:
+            found = self._detect(detector, name, pair)
+            self._cache.put((detector, name), found)
+        return found
+
+    def _evaluate_pair(self, detector: str, pair: Pair, work: PairWork) -> Iterator[Row]:
         self._two_views.begin_pair()
-        for name in (pair.image_1, pair.image_2):
-            if name not in cache:
-                cache[name] = self._detect(detector, name, pair)
+        images = [self._image(detector, name, pair) for name in (pair.image_1, pair.image_2)]
         for combination, key in zip(work.combinations, work.row_keys, strict=True):
             row = begin_row(self._context, pair, combination, key)
             try:
-                first, second = (_unless_failed(cache[n]) for n in (pair.image_1, pair.image_2))
+                first, second = map(_unless_failed, images)
                 _record_detection(row, first, second)
                 described = (
                     self._describe(first, combination, pair.image_1, pair),

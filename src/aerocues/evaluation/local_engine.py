@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import collections
+import contextlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
-from multiprocessing.connection import wait
 
-from aerocues.evaluation.child_process import Loss
-from aerocues.evaluation.engine import Activity, Finished, Watch
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.rows import failed_rows
-from aerocues.evaluation.unit import Context, StageCall, Unit, split
-from aerocues.evaluation.worker_process import WorkerProcess
-
-POLL_SECONDS = 0.2
+from aerocues.evaluation.engine import Engine, Finished, Watch
+from aerocues.evaluation.unit import Context, Unit
+from aerocues.evaluation.worker_pool import WorkerPool
 
 
 @dataclass(frozen=True)
@@ -35,111 +29,31 @@ class LocalEngine:
     timeout: float
     memory_limit_mb: int
 
+    def _pool(self, context: Context) -> WorkerPool:
+        return WorkerPool(context, self.workers, self.timeout, self.memory_limit_mb)
+
     def run(
         self, units: Sequence[Unit], context: Context, watch: Watch
     ) -> Generator[Finished, None, None]:
         """Run all units; see `Engine.run`."""
-        queue = collections.deque(units)
-        pool = _Pool(self, context)
-        try:
-            while queue or pool.busy:
-                pool.fill(queue)
-                watch(pool.activities())
-                for finished, remaining in pool.collect():
-                    queue.extendleft(reversed(remaining))
-                    if finished is not None:
-                        yield finished
-        finally:
-            pool.close()
+        with contextlib.closing(self._pool(context)) as pool:
+            yield from pool.run(units, watch)
+
+    @contextlib.contextmanager
+    def standing(self, context: Context) -> Iterator[Engine]:
+        """An engine whose workers, with the features that they hold, outlive a call of `run`."""
+        with contextlib.closing(self._pool(context)) as pool:
+            yield _Standing(pool)
 
 
-class _Pool:
-    """The workers of one run and what each of them is at."""
+@dataclass(frozen=True)
+class _Standing:
+    """Workers that serve one context."""
 
-    def __init__(self, engine: LocalEngine, context: Context) -> None:
-        self._engine = engine
-        self._context = context
-        self._exclusive = context.protocol.timing == "exclusive"
-        self._idle: list[WorkerProcess] = []
-        self.busy: dict[WorkerProcess, Unit] = {}
+    pool: WorkerPool
 
-    def _fresh(self) -> WorkerProcess:
-        used = {worker.number for worker in (*self._idle, *self.busy)}
-        number = next(n for n in range(self._engine.workers) if n not in used)
-        return WorkerProcess(
-            number, self._context, self._engine.memory_limit_mb, pinned=self._exclusive
-        )
-
-    def fill(self, queue: collections.deque[Unit]) -> None:
-        """Give every worker that has nothing to do the next unit."""
-        while queue and len(self.busy) < self._engine.workers:
-            unit = queue.popleft()
-            fresh = self._needs_own_process(unit)
-            if fresh and self._idle:
-                self._idle.pop().stop()
-            worker = self._idle.pop() if self._idle and not fresh else self._fresh()
-            worker.begin(unit)
-            self.busy[worker] = unit
-
-    def _needs_own_process(self, unit: Unit) -> bool:
-        return unit.alone or self._context.methods.detectors[unit.detector].unstable
-
-    def activities(self) -> list[Activity]:
-        return [worker.activity() for worker in sorted(self.busy, key=lambda w: w.number)]
-
-    def collect(self) -> Iterator[tuple[Finished | None, list[Unit]]]:
-        """Finished units, and what remains of those whose worker was lost."""
-        ready = wait([worker.pipe for worker in self.busy], POLL_SECONDS)
-        for worker in list(self.busy):
-            if worker.pipe in ready:
-                rows = worker.rows()
-                if isinstance(rows, list):
-                    yield self._advance(worker, rows), []
-                    continue
-                loss: Loss | None = rows
-            else:
-                loss = worker.overrun(self._engine.timeout)
-            if loss is not None:
-                yield self._settle(worker, loss)
-
-    def _advance(self, worker: WorkerProcess, rows: list[Row]) -> Finished:
-        """Take the rows of the next pair of a worker's unit."""
-        unit = self.busy.pop(worker)
-        done, rest = unit.parts(1)
-        if rest.work:
-            self.busy[worker] = rest
-        else:
-            self._retire(worker, unit)
-        return Finished(done, rows)
-
-    def _retire(self, worker: WorkerProcess, unit: Unit) -> None:
-        if self._needs_own_process(unit):
-            # Its memory may be corrupt: nothing else is to be measured there.
-            worker.stop()
-        else:
-            self._idle.append(worker)
-
-    def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
-        unit = self.busy.pop(worker)
-        worker.stop()
-        remaining, guilty = split(
-            unit, loss.call, certain=loss.status != "crashed", pairs=self._pairs_of(loss.call)
-        )
-        if guilty is None:
-            return None, remaining
-        rows = failed_rows(self._context, guilty, loss.status, loss.message)
-        return Finished(guilty, rows), remaining
-
-    def _pairs_of(self, call: StageCall | None) -> frozenset[int] | None:
-        """The pairs that need the features of one image; None where a call is about a pair."""
-        if call is None or call.stage not in ("detect", "describe"):
-            return None
-        return frozenset(
-            pair.index
-            for pair in self._context.dataset.pairs
-            if call.image in (pair.image_1, pair.image_2)
-        )
-
-    def close(self) -> None:
-        for worker in (*self._idle, *self.busy):
-            worker.stop()
+    def run(
+        self, units: Sequence[Unit], context: Context, watch: Watch
+    ) -> Generator[Finished, None, None]:
+        """Run all units; `context` is the one that the workers were started with."""
+        yield from self.pool.run(units, watch)

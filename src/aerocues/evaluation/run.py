@@ -5,29 +5,30 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
+from aerocues.evaluation.context import make_context, run_facts
 from aerocues.evaluation.engine import Activity, Engine, Finished
 from aerocues.evaluation.plan import Plan, content_hash, make_plan
 from aerocues.evaluation.planned_rows import planned_table
-from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
+from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.results import Results
 from aerocues.evaluation.store import RUN, Store
 from aerocues.evaluation.unit import Context
-from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.methods.combination import Combination
-from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 
 if TYPE_CHECKING:
     from collections.abc import Generator
+
+    from aerocues.evaluation.local_engine import LocalEngine
 
 DEFAULT_TIMEOUT = 600.0
 
@@ -74,7 +75,7 @@ def usable_cores() -> int:
     return os.cpu_count() or 1
 
 
-def local_engine(limits: Limits, timing: Timing) -> Engine:
+def local_engine(limits: Limits, timing: Timing) -> LocalEngine:
     """The engine for this machine.
 
     Raises
@@ -98,28 +99,6 @@ def local_engine(limits: Limits, timing: Timing) -> Engine:
     return LocalEngine(workers, limits.timeout, memory)
 
 
-def _context(
-    dataset: Dataset, preset: Preset, seed: int, timing: Timing, limit: KeypointLimit
-) -> Context:
-    protocol = MeasurementProtocol(
-        seed=seed,
-        timing=timing,
-        chance=ChanceTest() if preset.chance_test else None,
-        limit=limit,
-        thresholds=preset.thresholds,
-    )
-    versions = software_versions()
-    settings_key = content_hash([preset.name, protocol.identity(), versions["opencv"]])
-    return Context(
-        dataset=dataset,
-        methods=limit.limited(installed_methods().with_preset(preset)),
-        preset=preset.name,
-        protocol=protocol,
-        settings_key=settings_key,
-        machine=machine_name(),
-    )
-
-
 def _select(
     context: Context,
     combinations: str | Iterable[str | Combination] | None,
@@ -133,32 +112,6 @@ def _select(
     else:
         patterns = [str(combination) for combination in combinations]
     return select(context.methods, patterns, **kept, everything=everything)
-
-
-def _facts(
-    context: Context, preset: Preset, plan: Plan, combinations: Sequence[Combination]
-) -> dict[str, object]:
-    return {
-        "settings_key": context.settings_key,
-        "dataset": {
-            "name": context.dataset.name,
-            "geometry": context.dataset.geometry,
-            "images": len(context.dataset.images),
-            "pairs": len(context.dataset.pairs),
-            "settings": dict(context.dataset.settings),
-            "source": asdict(context.dataset.source) if context.dataset.source else None,
-        },
-        "preset": context.preset,
-        "preset_parts": asdict(preset),
-        "protocol": asdict(context.protocol),
-        "combinations": [str(combination) for combination in combinations],
-        "exclusions": [
-            {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}
-            for e in plan.exclusions
-        ],
-        "versions": software_versions(),
-        "machine": machine_facts(),
-    }
 
 
 def run(
@@ -224,7 +177,7 @@ def run(
     observer = observer or Observer()
     engine = engine or local_engine(limits or Limits(), timing)
     parts = as_preset(preset)
-    context = _context(dataset, parts, seed, timing, limit)
+    context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
     store = Store.create(Path(output))
@@ -233,7 +186,7 @@ def run(
         plan = make_plan(context, chosen, present.__contains__, observer.hashing)
         dataset_key = content_hash([dataset.geometry, dataset.settings])
         store.write_plan(planned_table(context, dataset_key, plan.rows))
-        store.write_run(_facts(context, parts, plan, chosen))
+        store.write_run(run_facts(context, parts, plan, chosen))
         observer.planned(plan)
         _measure(engine.run(plan.units, context, observer.working), store, observer)
     return Results(store.folder)
@@ -256,7 +209,7 @@ def plan_run(
 ) -> Plan:
     """What `run` would do with the same arguments; nothing is measured or written."""
     parts = as_preset(preset)
-    context = _context(dataset, parts, seed, timing, limit)
+    context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
     present: frozenset[str] = frozenset()

@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 RUN = "run.json"
+RACE = "race.json"
 PLAN = "plan.parquet"
-OWN = (PARTS, RUN, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
+OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
 LONGEST_LIST = 12
 RETRIED = tuple(status.name for status in STATUSES if status.retried)
 

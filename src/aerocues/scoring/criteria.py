@@ -11,6 +11,7 @@ from aerocues.errors import ScoreError
 
 Better = Literal["higher", "lower"]
 DIRECTIONS: tuple[Better, ...] = ("higher", "lower")
+Aspect = Literal["accuracy", "quantity", "speed", "other"]
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class Criterion:
     description : str
     beyond_chance : bool
         Whether it can be had only where shuffled matches were verified, too.
+    aspect : {"accuracy", "quantity", "speed", "other"}
+        What it tells of: objectives weigh these.
 
     Raises
     ------
@@ -42,6 +45,7 @@ class Criterion:
     reconstruction: bool = False
     description: str = ""
     beyond_chance: bool = False
+    aspect: Aspect = "other"
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -62,28 +66,39 @@ def _beyond_chance(divisor: str) -> str:
 
 
 _BY_PAIRS: tuple[Criterion, ...] = (
-    Criterion("recall", description="inliers / keypoints of image 1"),
-    Criterion("precision", description="inliers / matches: the inlier ratio"),
-    Criterion("repeatability", description="inliers / the smaller number of keypoints"),
-    Criterion("f1_score", description="harmonic mean of precision and recall"),
-    Criterion("inliers", description="matches that agree with the model"),
-    Criterion("matches", description="mutual matches"),
-    Criterion("seconds_per_1k_matches", "lower", description="seconds for 1000 matches"),
-    Criterion("seconds_per_1k_inliers", "lower", description="seconds for 1000 inliers"),
+    Criterion("recall", description="inliers / keypoints of image 1", aspect="accuracy"),
+    Criterion("precision", description="inliers / matches: the inlier ratio", aspect="accuracy"),
+    Criterion(
+        "repeatability", description="inliers / the smaller number of keypoints", aspect="accuracy"
+    ),
+    Criterion("f1_score", description="harmonic mean of precision and recall", aspect="accuracy"),
+    Criterion("inliers", description="matches that agree with the model", aspect="quantity"),
+    Criterion("matches", description="mutual matches", aspect="quantity"),
+    Criterion(
+        "seconds_per_1k_matches", "lower", description="seconds for 1000 matches", aspect="speed"
+    ),
+    Criterion(
+        "seconds_per_1k_inliers", "lower", description="seconds for 1000 inliers", aspect="speed"
+    ),
     Criterion(
         "recall_beyond_chance",
         column=_beyond_chance("keypoints_1"),
         description="excess inliers / keypoints of image 1",
         beyond_chance=True,
+        aspect="accuracy",
     ),
     Criterion(
-        "precision_beyond_chance", description="excess inliers / matches", beyond_chance=True
+        "precision_beyond_chance",
+        description="excess inliers / matches",
+        beyond_chance=True,
+        aspect="accuracy",
     ),
     Criterion(
         "repeatability_beyond_chance",
         column=_beyond_chance("least(keypoints_1, keypoints_2)"),
         description="excess inliers / the smaller number of keypoints",
         beyond_chance=True,
+        aspect="accuracy",
     ),
     Criterion(
         "f1_beyond_chance",
@@ -91,11 +106,13 @@ _BY_PAIRS: tuple[Criterion, ...] = (
         column="2 * excess_inliers / nullif(matches + keypoints_1, 0)",
         description="harmonic mean of precision and recall beyond chance",
         beyond_chance=True,
+        aspect="accuracy",
     ),
     Criterion(
         "excess_inliers",
         description="inliers beyond those that shuffled matches give",
         beyond_chance=True,
+        aspect="quantity",
     ),
     Criterion(
         "seconds_per_1k_excess_inliers",
@@ -103,9 +120,17 @@ _BY_PAIRS: tuple[Criterion, ...] = (
         column="1000 * total_seconds / nullif(excess_inliers, 0)",
         description="seconds for 1000 inliers beyond chance",
         beyond_chance=True,
+        aspect="speed",
     ),
-    Criterion("total_seconds", "lower", description="seconds for one image and one pair"),
-    Criterion("seconds_per_1k_keypoints", "lower", description="seconds for 1000 keypoints"),
+    Criterion(
+        "total_seconds", "lower", description="seconds for one image and one pair", aspect="speed"
+    ),
+    Criterion(
+        "seconds_per_1k_keypoints",
+        "lower",
+        description="seconds for 1000 keypoints",
+        aspect="speed",
+    ),
     Criterion("descriptor_bytes", "lower", description="bytes of one descriptor"),
     Criterion("peak_memory_mb", "lower", description="largest rise of memory in one stage"),
 )

@@ -16,16 +16,17 @@ MEASURED = ("ok", "chance")
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage, and the columns whose sum is its time."""
+    """A stage, the columns whose sum is its time, and the methods that decide how long it takes."""
 
     name: str
     columns: tuple[str, ...]
+    methods: tuple[str, ...] = ()
 
 
 STAGES: tuple[Stage, ...] = (
-    Stage("detect", ("detect_seconds_1", "detect_seconds_2")),
-    Stage("describe", ("describe_seconds_1", "describe_seconds_2")),
-    Stage("match", ("match_seconds",)),
+    Stage("detect", ("detect_seconds_1", "detect_seconds_2"), ("detector",)),
+    Stage("describe", ("describe_seconds_1", "describe_seconds_2"), ("descriptor",)),
+    Stage("match", ("match_seconds",), ("norm", "matcher")),
     Stage("verify", ("verify_seconds",)),
     Stage("total", ("total_seconds",)),
 )
@@ -97,3 +98,45 @@ def _compare_stage(joined: pl.DataFrame, stage: Stage) -> dict[str, object] | No
         "ratio_high": float(high),
         "rank_correlation": None if np.isnan(correlation) else float(correlation),
     }
+
+
+def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[str, float]]:
+    """How many times as long each stage takes on the second machine, method by method.
+
+    Parameters
+    ----------
+    first, second : pl.DataFrame
+        Rows of one dataset, measured on two machines, with the times of stages.
+
+    Returns
+    -------
+    dict
+        By stage (``detect, describe, match, verify``), then by detector, descriptor, or norm and
+        matcher (``L2-BF``); ``*`` stands for all. Geometric means of the ratios of the same rows.
+
+    Raises
+    ------
+    ScoreError
+        If some stage was not measured on both machines for the same rows.
+    """
+    joined = _of_success(first).join(_of_success(second), on=KEY, suffix="_of_second")
+    factors: dict[str, dict[str, float]] = {}
+    for stage in STAGES[:-1]:
+        columns = [*stage.columns, *(f"{name}_of_second" for name in stage.columns)]
+        if joined.is_empty() or not set(columns) <= set(joined.columns):
+            raise ScoreError(
+                f"the two results share no row with times to {stage.name}; measure the same data "
+                "set with the same combinations on both machines"
+            )
+        here = pl.sum_horizontal(pl.col(stage.columns), ignore_nulls=False)
+        there = pl.sum_horizontal(
+            pl.col(f"{name}_of_second" for name in stage.columns), ignore_nulls=False
+        )
+        method = pl.concat_str(stage.methods, separator="-") if stage.methods else pl.lit("*")
+        ratios = joined.select(method.alias("method"), (there / here).log().alias("ratio")).filter(
+            pl.col("ratio").is_finite()
+        )
+        by_method = ratios.group_by("method").agg(pl.col("ratio").mean().exp()).sort("method")
+        whole = float(np.exp(ratios["ratio"].to_numpy().mean()))
+        factors[stage.name] = {"*": whole, **dict(by_method.iter_rows())}
+    return factors

@@ -8,7 +8,7 @@ combinations that come out on top are measured next, the cheaper and less measur
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
-from aerocues.scoring.aggregation import aggregate
 from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings
-from aerocues.scoring.weights import weights_by_method
 from aerocues.tuning.scales import Array, Mask, Scales
 from aerocues.tuning.surrogate import Surrogate, fit
+from aerocues.tuning.valuation import Valuation
 
 Cell = tuple[int, int]
 Ended = Literal["budget", "sure", "measured"]
@@ -44,8 +44,8 @@ class Arena(Protocol):
     spent: float
     """Seconds that all measurements so far took."""
 
-    def measure(self, cells: Sequence[Cell]) -> Array:
-        """Values (N, C) of alternatives on pairs; a row of NaN where one failed."""
+    def measure(self, cells: Sequence[Cell]) -> Mapping[Cell, Array]:
+        """Values (C,) of alternatives on pairs, NaN where one failed; none if time was up."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +61,13 @@ class RaceSettings:
         Probability of the leader at which the race ends.
     look : float
         Share of the alternatives, the cheapest, that are looked at first.
-    draws : int
-        Tables drawn in a round.
+    draws, last_draws : int
+        Tables drawn in a round, and to tell the chances at the end.
     batch : int
         Measurements of a round.
     score : ScoreSettings
+    objective : Objective
+        What the best is to be best for.
     """
 
     budget: float
@@ -73,16 +75,32 @@ class RaceSettings:
     sure: float = 1.0
     look: float = 0.25
     draws: int = 24
+    last_draws: int = 400
     batch: int = 16
     score: ScoreSettings = ScoreSettings()  # noqa: RUF009 - it is frozen
+    objective: Objective = OBJECTIVES["balanced"]
 
 
 @dataclass(frozen=True)
 class Round:
-    """How a race stood after a round: seconds spent, cells measured, the leader and its chance."""
+    """How a race stood after a round.
+
+    Parameters
+    ----------
+    spent : float
+        Seconds.
+    measured : int
+        Cells.
+    contenders : int
+        Alternatives that may still be the best or among the few best: in one drawn table at least.
+    leader : str
+        Whose expected score is the highest, and in what share of the drawn tables it is the best.
+    probability : float
+    """
 
     spent: float
     measured: int
+    contenders: int
     leader: str
     probability: float
 
@@ -116,8 +134,17 @@ class RaceOutcome:
         return np.argsort(-self.scores, kind="stable")
 
 
-def race(arena: Arena, settings: RaceSettings) -> RaceOutcome:
+def race(
+    arena: Arena, settings: RaceSettings, told: Callable[[Round], None] | None = None
+) -> RaceOutcome:
     """Run a race; the same arena and seed give the same answer.
+
+    Parameters
+    ----------
+    arena : Arena
+    settings : RaceSettings
+    told : callable, optional
+        Told of each round.
 
     Raises
     ------
@@ -126,12 +153,12 @@ def race(arena: Arena, settings: RaceSettings) -> RaceOutcome:
     """
     if len(arena.alternatives) < 2 or not len(arena.blocks):
         raise ScoreError("a race needs two alternatives and a pair; give more")
-    return _Race(arena, settings).run()
+    return _Race(arena, settings, told or (lambda _: None)).run()
 
 
 class _Race:
-    def __init__(self, arena: Arena, settings: RaceSettings) -> None:
-        self._arena, self._settings = arena, settings
+    def __init__(self, arena: Arena, settings: RaceSettings, told: Callable[[Round], None]) -> None:
+        self._arena, self._settings, self._told = arena, settings, told
         self._rng = np.random.default_rng(settings.seed)
         shape = (len(arena.alternatives), len(arena.blocks))
         self._known = np.zeros(shape, np.bool_)
@@ -145,24 +172,30 @@ class _Race:
         self._measure(self._first_look())
         while True:
             surrogate, scales = self._fit()
-            scores, drawn = self._score(surrogate, scales)
-            best = np.argmax(drawn, axis=1)
-            probability = np.bincount(best, minlength=len(scores)) / len(drawn)
+            scores, drawn = self._score(surrogate, scales, self._settings.draws)
+            interest = _interest(drawn)
             leader = int(np.argmax(scores))
-            names = self._arena.alternatives
-            spent, chance = self._arena.spent, float(probability[leader])
-            self._rounds.append(Round(spent, int(self._known.sum()), names[leader], chance))
-            ended = self._ended(chance)
-            cells = self._next(drawn, probability)
-            if ended is None and not cells:
-                ended = "measured"
+            chance = float(_chances(drawn)[leader])
+            self._tell(leader, chance, int((interest > 0).sum()))
+            cells = self._next(interest)
+            ended = self._ended(chance, more=bool(cells))
             if ended is not None:
-                return RaceOutcome(scores, probability, self._known, ended, self._rounds)
+                drawn = self._score(surrogate, scales, self._settings.last_draws)[1]
+                probability = _chances(drawn)
+                if ended != "sure" or probability[leader] >= self._settings.sure:
+                    return RaceOutcome(scores, probability, self._known, ended, self._rounds)
             self._measure(cells)
 
-    def _ended(self, chance: float) -> Ended | None:
+    def _tell(self, leader: int, chance: float, contenders: int) -> None:
+        name, spent = self._arena.alternatives[leader], self._arena.spent
+        self._rounds.append(Round(spent, int(self._known.sum()), contenders, name, chance))
+        self._told(self._rounds[-1])
+
+    def _ended(self, chance: float, *, more: bool) -> Ended | None:
         if self._arena.spent >= self._settings.budget:
             return "budget"
+        if not more:
+            return "measured"
         return "sure" if chance >= self._settings.sure < 1.0 else None
 
     def _first_look(self) -> list[Cell]:
@@ -176,14 +209,15 @@ class _Race:
         for start in range(0, len(cells), self._settings.batch):
             if start and self._arena.spent >= self._settings.budget:
                 return
-            batch = list(cells[start : start + self._settings.batch])
-            values = self._arena.measure(batch)
-            for (alternative, pair), row in zip(batch, values, strict=True):
-                self._values[alternative, pair] = row
+            batch = cells[start : start + self._settings.batch]
+            for (alternative, pair), values in self._arena.measure(batch).items():
+                self._values[alternative, pair] = values
                 self._known[alternative, pair] = True
 
     def _fit(self) -> tuple[Surrogate, Scales]:
         measured = self._values[self._known]
+        if not len(measured):
+            raise ScoreError("the budget was over before anything was measured; give more")
         if np.isnan(measured).all(axis=0).any():
             raise ScoreError(
                 "every combination failed on the first pairs; look whether the images overlap"
@@ -192,46 +226,43 @@ class _Race:
         stretched = scales.stretch(self._values)
         return fit(stretched, self._known, self._features, self._arena.blocks), scales
 
-    def _score(self, surrogate: Surrogate, scales: Scales) -> tuple[Array, Array]:
-        """CUES (A,) expected, and (draws, A) of drawn tables; under the same bounds and weights."""
-        settings = self._settings
+    def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
+        """Scores (A,) expected, and (draws, A) of drawn tables."""
+        settings, arena = self._settings, self._arena
         whole = scales.shrink(surrogate.expected)
-        low, high = whole.min(axis=(0, 1)), whole.max(axis=(0, 1))
-        width = np.where(high > low, high - low, 1.0)
-
-        def normalised(values: Array) -> Array:
-            share = (values.mean(axis=1) - low) / width
-            upright = np.where(self._is_cost, 1.0 - share, share)
-            powered: Array = np.clip(upright, 0.0, 1.0) ** settings.score.alpha
-            return powered
-
-        matrix = normalised(whole)
-        by_method = weights_by_method(matrix[None], settings.score.weights)
-        weights = aggregate(by_method, settings.score.aggregation)[0]
+        value = Valuation(whole, arena.criteria, arena.blocks, settings.score, settings.objective)
         drawn = []
-        for _ in range(settings.draws):
-            values = np.where(
-                self._known[..., None], whole, scales.shrink(surrogate.draw(self._rng))
-            )
-            drawn.append(normalised(values) @ weights)
-        return np.asarray(matrix @ weights), np.array(drawn)
+        for _ in range(draws):
+            other = scales.shrink(surrogate.draw(self._rng))
+            drawn.append(value.of(np.where(self._known[..., None], whole, other)))
+        return value.of(whole), np.array(drawn)
 
-    def _next(self, drawn: Array, probability: Array) -> list[Cell]:
-        """The next pair of those that may be the best, or among the few best."""
-        few = np.argsort(-drawn, axis=1, kind="stable")[:, :FEW]
-        among = np.bincount(few.ravel(), minlength=drawn.shape[1]) / len(drawn)
+    def _next(self, interest: Array) -> list[Cell]:
+        """The next pair of those that may win, the cheaper and less measured ones first."""
         counts = self._known.sum(axis=1)
-        interest = (probability + among) / np.sqrt(
-            (counts + 1.0) * np.maximum(self._arena.predicted_seconds, 1e-9)
-        )
+        seconds = np.maximum(self._arena.predicted_seconds, 1e-9)
+        worth = interest / np.sqrt((counts + 1.0) * seconds)
         chosen: list[Cell] = []
-        for alternative in np.argsort(-interest, kind="stable"):
+        for alternative in np.argsort(-worth, kind="stable"):
             left = [pair for pair in self._order if not self._known[alternative, pair]]
-            if interest[alternative] > 0 and left:
+            if worth[alternative] > 0 and left:
                 chosen.append((int(alternative), int(left[0])))
-            if interest[alternative] <= 0 or len(chosen) == self._settings.batch:
+            if worth[alternative] <= 0 or len(chosen) == self._settings.batch:
                 break
         return chosen
+
+
+def _chances(drawn: Array) -> Array:
+    """(A,) share of the drawn tables in which an alternative is the best."""
+    best = np.argmax(drawn, axis=1)
+    return np.asarray(np.bincount(best, minlength=drawn.shape[1]) / len(drawn))
+
+
+def _interest(drawn: Array) -> Array:
+    """(A,) share of the drawn tables in which it is the best, and among the few best."""
+    few = np.argsort(-drawn, axis=1, kind="stable")[:, :FEW]
+    among = np.bincount(few.ravel(), minlength=drawn.shape[1]) / len(drawn)
+    return np.asarray(_chances(drawn) + among)
 
 
 def _features(components: Mapping[str, Sequence[str]]) -> Array:

@@ -62,7 +62,7 @@ class ReplayArena:
             whole += sum(float(part[groups.index(name)].sum()) for name in dict.fromkeys(groups))
         return whole
 
-    def measure(self, cells: Sequence[Cell]) -> Array:
+    def measure(self, cells: Sequence[Cell]) -> dict[Cell, Array]:
         for alternative, pair in cells:
             self.spent += float(self._parts[-1][alternative, pair])
             for groups, part in zip(self._shared, self._parts, strict=False):
@@ -70,8 +70,7 @@ class ReplayArena:
                 if due not in self._paid:
                     self._paid.add(due)
                     self.spent += float(part[alternative, pair])
-        rows, columns = np.array(cells).T
-        return np.asarray(self._values[rows, columns], np.float64)
+        return {cell: self._values[cell] for cell in cells}
 
 
 def _parts(seconds: Array, shared: Sequence[Sequence[str]]) -> list[Array]:

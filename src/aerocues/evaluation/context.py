@@ -1,0 +1,71 @@
+"""What all units of a measurement share, and how it is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.evaluation.plan import Plan, content_hash
+from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
+from aerocues.evaluation.unit import Context
+from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import Preset
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+
+
+def make_context(
+    dataset: Dataset,
+    preset: Preset,
+    *,
+    seed: int = 0,
+    timing: Timing = "shared",
+    limit: KeypointLimit = ALL_KEYPOINTS,
+) -> Context:
+    """What all units of a measurement share; the parameters are those of `run.run`."""
+    protocol = MeasurementProtocol(
+        seed=seed,
+        timing=timing,
+        chance=ChanceTest() if preset.chance_test else None,
+        limit=limit,
+        thresholds=preset.thresholds,
+    )
+    versions = software_versions()
+    settings_key = content_hash([preset.name, protocol.identity(), versions["opencv"]])
+    return Context(
+        dataset=dataset,
+        methods=limit.limited(installed_methods().with_preset(preset)),
+        preset=preset.name,
+        protocol=protocol,
+        settings_key=settings_key,
+        machine=machine_name(),
+    )
+
+
+def run_facts(
+    context: Context, preset: Preset, plan: Plan, combinations: Sequence[Combination]
+) -> dict[str, object]:
+    """Configuration, versions and machine of a run, as ``run.json`` records them."""
+    return {
+        "settings_key": context.settings_key,
+        "dataset": {
+            "name": context.dataset.name,
+            "geometry": context.dataset.geometry,
+            "images": len(context.dataset.images),
+            "pairs": len(context.dataset.pairs),
+            "settings": dict(context.dataset.settings),
+            "source": asdict(context.dataset.source) if context.dataset.source else None,
+        },
+        "preset": context.preset,
+        "preset_parts": asdict(preset),
+        "protocol": asdict(context.protocol),
+        "combinations": [str(combination) for combination in combinations],
+        "exclusions": [
+            {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}
+            for e in plan.exclusions
+        ],
+        "versions": software_versions(),
+        "machine": machine_facts(),
+    }

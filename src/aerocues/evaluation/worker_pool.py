@@ -1,0 +1,126 @@
+"""Worker processes and what each of them is at."""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Generator, Iterator, Sequence
+from multiprocessing.connection import wait
+
+from aerocues.evaluation.child_process import Loss
+from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.rows import failed_rows
+from aerocues.evaluation.unit import Context, StageCall, Unit, split
+from aerocues.evaluation.worker_process import WorkerProcess
+
+POLL_SECONDS = 0.2
+
+
+class WorkerPool:
+    """Worker processes on this machine; see `LocalEngine` for the parameters."""
+
+    def __init__(
+        self, context: Context, workers: int, timeout: float, memory_limit_mb: int
+    ) -> None:
+        self._context = context
+        self._workers = workers
+        self._timeout = timeout
+        self._memory_limit_mb = memory_limit_mb
+        self._exclusive = context.protocol.timing == "exclusive"
+        self._idle: list[WorkerProcess] = []
+        self._busy: dict[WorkerProcess, Unit] = {}
+
+    def _fresh(self) -> WorkerProcess:
+        used = {worker.number for worker in (*self._idle, *self._busy)}
+        number = next(n for n in range(self._workers) if n not in used)
+        return WorkerProcess(number, self._context, self._memory_limit_mb, pinned=self._exclusive)
+
+    def run(self, units: Sequence[Unit], watch: Watch) -> Generator[Finished, None, None]:
+        """Run all units; workers that are idle at the end are kept."""
+        queue = collections.deque(units)
+        try:
+            while queue or self._busy:
+                self._fill(queue)
+                watch(self._activities())
+                for finished, remaining in self._collect():
+                    queue.extendleft(reversed(remaining))
+                    if finished is not None:
+                        yield finished
+        finally:
+            while self._busy:
+                self._busy.popitem()[0].stop()
+
+    def _fill(self, queue: collections.deque[Unit]) -> None:
+        """Give every worker that has nothing to do the next unit."""
+        while queue and len(self._busy) < self._workers:
+            unit = queue.popleft()
+            fresh = self._needs_own_process(unit)
+            if fresh and self._idle:
+                self._idle.pop().stop()
+            worker = self._idle.pop() if self._idle and not fresh else self._fresh()
+            worker.begin(unit)
+            self._busy[worker] = unit
+
+    def _needs_own_process(self, unit: Unit) -> bool:
+        return unit.alone or self._context.methods.detectors[unit.detector].unstable
+
+    def _activities(self) -> list[Activity]:
+        return [worker.activity() for worker in sorted(self._busy, key=lambda w: w.number)]
+
+    def _collect(self) -> Iterator[tuple[Finished | None, list[Unit]]]:
+        """Finished units, and what remains of those whose worker was lost."""
+        ready = wait([worker.pipe for worker in self._busy], POLL_SECONDS)
+        for worker in list(self._busy):
+            if worker.pipe in ready:
+                rows = worker.rows()
+                if isinstance(rows, list):
+                    yield self._advance(worker, rows), []
+                    continue
+                loss: Loss | None = rows
+            else:
+                loss = worker.overrun(self._timeout)
+            if loss is not None:
+                yield self._settle(worker, loss)
+
+    def _advance(self, worker: WorkerProcess, rows: list[Row]) -> Finished:
+        """Take the rows of the next pair of a worker's unit."""
+        unit = self._busy.pop(worker)
+        done, rest = unit.parts(1)
+        if rest.work:
+            self._busy[worker] = rest
+        else:
+            self._retire(worker, unit)
+        return Finished(done, rows)
+
+    def _retire(self, worker: WorkerProcess, unit: Unit) -> None:
+        if self._needs_own_process(unit):
+            # Its memory may be corrupt: nothing else is to be measured there.
+            worker.stop()
+        else:
+            self._idle.append(worker)
+
+    def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
+        unit = self._busy.pop(worker)
+        worker.stop()
+        remaining, guilty = split(
+            unit, loss.call, certain=loss.status != "crashed", pairs=self._pairs_of(loss.call)
+        )
+        if guilty is None:
+            return None, remaining
+        rows = failed_rows(self._context, guilty, loss.status, loss.message)
+        return Finished(guilty, rows), remaining
+
+    def _pairs_of(self, call: StageCall | None) -> frozenset[int] | None:
+        """The pairs that need the features of one image; None where a call is about a pair."""
+        if call is None or call.stage not in ("detect", "describe"):
+            return None
+        return frozenset(
+            pair.index
+            for pair in self._context.dataset.pairs
+            if call.image in (pair.image_1, pair.image_2)
+        )
+
+    def close(self) -> None:
+        """End all workers."""
+        while self._idle:
+            self._idle.pop().stop()

@@ -1,0 +1,142 @@
+"""Measures single combinations on single pairs into a results folder, each once."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterable, Sequence
+from itertools import groupby
+
+from aerocues.datasets.dataset import Pair
+from aerocues.evaluation.context import run_facts
+from aerocues.evaluation.cost import estimate_pair_seconds
+from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.plan import Plan, content_hash, make_plan
+from aerocues.evaluation.planned_rows import PlannedRow, planned_table
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.unit import Context, PairWork, Unit
+from aerocues.methods.combination import Combination
+from aerocues.methods.presets import Preset
+
+Measurement = tuple[int, Combination]
+"""The number of a pair, and what is measured on it."""
+
+
+class _TimeIsUpError(Exception):
+    """Ends what the workers are at."""
+
+
+class Bench:
+    """Measures what is asked for, and remembers it.
+
+    Parameters
+    ----------
+    context : Context
+    combinations : sequence of Combination
+        All that may be asked for.
+    store : Store
+        Open for writing.
+    preset : Preset
+        Recorded with the results.
+    hashing : callable
+        Told how many of all images have been read.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        combinations: Sequence[Combination],
+        store: Store,
+        preset: Preset,
+        hashing: Callable[[int, int], None] = lambda done, total: None,
+    ) -> None:
+        self.context = context
+        self._store = store
+        self.plan: Plan = make_plan(context, combinations, lambda _: False, hashing)
+        self._planned = {(row.pair, row.combination): row for row in self.plan.rows}
+        self._dataset_key = content_hash([context.dataset.geometry, context.dataset.settings])
+        keys = {row.row_key for row in self.plan.rows}
+        self._rows: dict[str, Row] = {
+            row["row_key"]: row
+            for row in store.rows().sort("measured_at").iter_rows(named=True)
+            if row["row_key"] in keys
+        }
+        store.write_run(run_facts(context, preset, self.plan, combinations))
+
+    def possible(self, measurement: Measurement) -> bool:
+        """Whether the images allow it."""
+        return measurement in self._planned
+
+    def row(self, measurement: Measurement) -> Row | None:
+        """What was measured; None where nothing was."""
+        planned = self._planned.get(measurement)
+        return None if planned is None else self._rows.get(planned.row_key)
+
+    def row_key(self, measurement: Measurement) -> str:
+        return self._planned[measurement].row_key
+
+    def measure(
+        self,
+        measurements: Iterable[Measurement],
+        engine: Engine,
+        *,
+        deadline: float = float("inf"),
+        watch: Callable[[Sequence[Activity]], None] = lambda _: None,
+    ) -> None:
+        """Measure what is not there yet; at the deadline what is unfinished is given up.
+
+        Parameters
+        ----------
+        measurements : iterable of Measurement
+        engine : Engine
+        deadline : float
+            By `time.monotonic`.
+        watch : callable
+            Told what the workers are doing.
+
+        Raises
+        ------
+        AerocuesError
+            If workers cannot be started or results not be written.
+        """
+        rows = [self._planned[each] for each in measurements]
+        missing = [row for row in rows if row.row_key not in self._rows]
+        if rows:
+            self._store.write_plan(planned_table(self.context, self._dataset_key, rows))
+        if not missing:
+            return
+
+        def look(activities: Sequence[Activity]) -> None:
+            if time.monotonic() >= deadline:
+                raise _TimeIsUpError
+            watch(activities)
+
+        with contextlib.suppress(_TimeIsUpError):
+            self._run(self._units(missing), engine, look)
+
+    def _run(
+        self, units: Sequence[Unit], engine: Engine, look: Callable[[Sequence[Activity]], None]
+    ) -> None:
+        with contextlib.closing(engine.run(units, self.context, look)) as finished_units:
+            for finished in finished_units:
+                name = content_hash([row["row_key"] for row in finished.rows])
+                self._store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
+                self._rows.update((str(row["row_key"]), row) for row in finished.rows)
+
+    def _units(self, rows: Sequence[PlannedRow]) -> list[Unit]:
+        """One unit a detector and pair, the costliest first."""
+        units = []
+        order = sorted(rows, key=lambda row: (row.combination.detector, row.pair))
+        for (detector, pair), group in groupby(
+            order, key=lambda row: (row.combination.detector, row.pair)
+        ):
+            own = list(group)
+            combinations = tuple(row.combination for row in own)
+            work = PairWork(pair, combinations, tuple(row.row_key for row in own))
+            cost = estimate_pair_seconds(self.context.methods, detector, combinations)
+            units.append(Unit(detector, (work,), cost))
+        return sorted(units, key=lambda unit: -unit.cost)
+
+    def pairs(self) -> list[Pair]:
+        return list(self.context.dataset.pairs)

@@ -1,0 +1,82 @@
+"""Times on another machine, from those measured here and factors between the two."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from aerocues.errors import SelectionError
+from aerocues.evaluation.metrics import Row, add_metrics
+
+ANY = "*"
+STAGES: dict[str, tuple[str, ...]] = {
+    "detect": ("detect_seconds_1", "detect_seconds_2"),
+    "describe": ("describe_seconds_1", "describe_seconds_2"),
+    "match": ("match_seconds",),
+    "verify": ("verify_seconds",),
+}
+_NEXT_STEP = "write one with 'aerocues compare HERE THERE --factors FILE'"
+
+
+@dataclass(frozen=True)
+class Device:
+    """Another machine.
+
+    Parameters
+    ----------
+    name : str
+    factors : mapping of stage to mapping of method to float
+        Seconds there / seconds here: of detect by detector, of describe by descriptor, of match
+        by norm and matcher (``L2-BF``); ``*`` stands for all that are not named.
+    """
+
+    name: str
+    factors: Mapping[str, Mapping[str, float]]
+
+    def there(self, row: Row) -> Row:
+        """The row with its times as on the device."""
+        method = {
+            "detect": row["detector"],
+            "describe": row["descriptor"],
+            "match": f"{row['norm']}-{row['matcher']}",
+        }
+        scaled = dict(row)
+        for stage, columns in STAGES.items():
+            own = self.factors[stage]
+            factor = own.get(str(method.get(stage, ANY)), own[ANY])
+            for name in (*columns, *(f"{column}_cpu" for column in columns)):
+                value = row[name]
+                scaled[name] = factor * value if isinstance(value, int | float) else None
+        return add_metrics(scaled)
+
+
+def read_device(path: Path) -> Device:
+    """The device in a file of factors.
+
+    Raises
+    ------
+    SelectionError
+        If the file cannot be read or does not hold factors.
+    """
+    try:
+        content: Any = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SelectionError(f"cannot read the factors {path}: {error}; {_NEXT_STEP}") from error
+    stages = content.get("stages") if isinstance(content, dict) else None
+    if not isinstance(stages, dict) or not all(_are_factors(stages.get(name)) for name in STAGES):
+        raise SelectionError(
+            f"{path} holds no factors: it needs 'stages' with {', '.join(STAGES)}, each with "
+            f"positive numbers, one of them for '{ANY}'; {_NEXT_STEP}"
+        )
+    return Device(str(content.get("machine", path.stem)), stages)
+
+
+def _are_factors(found: Any) -> bool:
+    return (
+        isinstance(found, dict)
+        and ANY in found
+        and all(isinstance(value, int | float) and value > 0 for value in found.values())
+    )

@@ -1,0 +1,261 @@
+"""Which combination to take, in minutes: representative pairs, a race, an answer."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aerocues.datasets.dataset import Dataset, Image, Pair
+from aerocues.errors import SelectionError
+from aerocues.evaluation.context import make_context
+from aerocues.evaluation.engine import Activity
+from aerocues.evaluation.plan import content_hash
+from aerocues.evaluation.run import Limits, local_engine
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.unit import Context
+from aerocues.methods.combination import Combination
+from aerocues.methods.presets import Preset, as_preset
+from aerocues.methods.selection import select
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.scoring.criteria import criteria_named
+from aerocues.scoring.objectives import Objective, objective_named
+from aerocues.scoring.settings import preset_named
+from aerocues.tuning.bench import Bench
+from aerocues.tuning.device import Device
+from aerocues.tuning.image_arena import ImageArena
+from aerocues.tuning.journal import Journal
+from aerocues.tuning.race import RaceOutcome, RaceSettings, Round, race
+from aerocues.tuning.representative import (
+    MOST_PAIRS,
+    Seen,
+    look_for_overlap,
+    probes,
+    spread_pairs,
+)
+from aerocues.tuning.standing import standing
+
+if TYPE_CHECKING:
+    import polars as pl
+
+BUDGET = 300.0
+SURE = 0.95
+# Fewer pairs tell next to nothing of the others.
+FEWEST_PAIRS = 2
+
+
+class Follower:
+    """Told how a race goes on; the base says nothing."""
+
+    def hashing(self, done: int, total: int) -> None:
+        """`done` of `total` images have been read to tell whether they changed."""
+
+    def looking(self, pairs: int) -> None:
+        """It is looked which of so many pairs show the same things."""
+
+    def racing(self, combinations: int, pairs: int) -> None:
+        """The race begins."""
+
+    def round(self, finished: Round) -> None:
+        """A round is over."""
+
+    def working(self, activities: Sequence[Activity]) -> None:
+        """What the workers are doing, several times a second."""
+
+
+@dataclass(frozen=True)
+class RaceOptions:
+    """What is raced for, and how long.
+
+    Parameters
+    ----------
+    budget : float
+        Wall seconds in all, from the first reading of images on.
+    objective : str
+        A row of `scoring.objectives.OBJECTIVES`.
+    sure : float
+        Probability of the leader at which the race ends before the budget is spent.
+    pairs : int
+        Pairs that stand for all, at most.
+    seed : int
+    device : Device, optional
+        Whose times count; this machine's by default.
+    """
+
+    budget: float = BUDGET
+    objective: str = "balanced"
+    sure: float = SURE
+    pairs: int = MOST_PAIRS
+    seed: int = 0
+    device: Device | None = None
+
+    def __post_init__(self) -> None:
+        if self.budget <= 0:
+            raise SelectionError("--budget must be positive; give it such as 5min")
+        if not 0.5 <= self.sure <= 1:
+            raise SelectionError("--sure is a probability from 0.5 to 1; give it such as 0.95")
+        if self.pairs < FEWEST_PAIRS:
+            raise SelectionError("--max-pairs must be 2 or more: one pair says nothing of others")
+
+
+@dataclass(frozen=True, eq=False)
+class Recommendation:
+    """What a race found.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With the pairs that stood for all.
+    seen : Seen
+    candidates : int
+        Pairs of the whole data set.
+    objective : Objective
+    outcome : RaceOutcome
+    ranked : pl.DataFrame
+        One row a combination that was measured with success, the best first: ``combination,
+        score, probability, pairs, succeeded``, medians over its pairs of
+        ``precision_beyond_chance, excess_inliers, total_seconds`` and of the stages, one image
+        each: ``detect_seconds, describe_seconds, match_seconds, verify_seconds``.
+    combinations, measured : int
+        How many raced, and how many of them were measured at all.
+    folder : Path
+        With all that was measured.
+    machine : str
+        Whose times count.
+    """
+
+    dataset: Dataset
+    seen: Seen
+    candidates: int
+    objective: Objective
+    outcome: RaceOutcome
+    ranked: pl.DataFrame
+    combinations: int
+    measured: int
+    folder: Path
+    machine: str
+
+    @property
+    def best(self) -> str:
+        """The combination to take."""
+        return str(self.ranked["combination"][0])
+
+
+def recommend(
+    dataset: Dataset,
+    output: str | Path,
+    combinations: str | Iterable[str] | None = None,
+    *,
+    options: RaceOptions | None = None,
+    preset: str | Preset = "default",
+    limit: KeypointLimit = ALL_KEYPOINTS,
+    limits: Limits | None = None,
+    follower: Follower | None = None,
+) -> Recommendation:
+    """Find the combination that suits images best, within a budget of time.
+
+    Pairs are chosen that stand for all; those that show nothing in common are left out. Then
+    combinations race: all that are cheap are looked at, and more pairs are measured of those that
+    can still win, until one is sure enough to be the best or the budget is spent.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    output : path
+        Results folder, made or continued: an interrupted race goes on from there, and one that is
+        finished gives the same answer again.
+    combinations : str or iterable of str, optional
+        Globs; all meaningful ones by default.
+    options : RaceOptions, optional
+    preset : str or Preset
+        Of parameters.
+    limit : KeypointLimit
+        How many keypoints of an image are kept.
+    limits : Limits, optional
+        Workers, time and memory.
+    follower : Follower, optional
+        Told how it goes on.
+
+    Raises
+    ------
+    AerocuesError
+        If the images show nothing in common, nothing succeeds, or the choice is too small.
+    """
+    began = time.monotonic()
+    options, follower = options or RaceOptions(), follower or Follower()
+    objective, parts = objective_named(options.objective), as_preset(preset)
+    pairs = spread_pairs(dataset.pairs, options.pairs)
+    part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
+    context = make_context(part, parts, seed=options.seed, limit=limit)
+    chosen = _chosen(context, combinations)
+    store = Store.create(Path(output))
+    engine_here = local_engine(limits or Limits(), "shared")
+    with store.writing(), engine_here.standing(context) as engine:
+        asked = list(dict.fromkeys([*chosen, *probes()]))
+        bench = Bench(context, asked, store, parts, follower.hashing)
+        follower.looking(len(pairs))
+        seen = look_for_overlap(bench, engine, pairs)
+        follower.racing(len(chosen), len(seen.overlapping))
+        scoring = preset_named("default" if parts.chance_test else "thesis")
+        arena = ImageArena(
+            bench,
+            engine,
+            chosen,
+            seen.overlapping,
+            criteria_named(objective.criteria(scoring.criteria)),
+            Journal.read(store.folder, _journal_key(bench, chosen, seen, options)),
+            options.budget,
+            began=began,
+            device=options.device,
+            watch=follower.working,
+        )
+        settings = RaceSettings(
+            options.budget,
+            options.seed,
+            sure=options.sure,
+            score=scoring.settings,
+            objective=objective,
+        )
+        outcome = race(arena, settings, follower.round)
+    return Recommendation(
+        part,
+        seen,
+        len(dataset.pairs),
+        objective,
+        outcome,
+        standing(bench, chosen, seen.overlapping, outcome, options.device),
+        len(chosen),
+        int(outcome.known.any(axis=1).sum()),
+        store.folder,
+        options.device.name if options.device else context.machine,
+    )
+
+
+def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:
+    names = {name for pair in pairs for name in (pair.image_1, pair.image_2)}
+    return [image for image in dataset.images if image.name in names]
+
+
+def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[Combination]:
+    gray = all(image.source.is_gray() for image in context.dataset.images)
+    descriptors = context.methods.descriptors
+    chosen = [
+        each
+        for each in select(context.methods, combinations)
+        if not (gray and descriptors[each.descriptor].needs_colour)
+    ]
+    if len(chosen) < 2:
+        raise SelectionError("a race needs two combinations; let --combinations choose more")
+    return chosen
+
+
+def _journal_key(
+    bench: Bench, chosen: Sequence[Combination], seen: Seen, options: RaceOptions
+) -> str:
+    """What the decisions depend on besides measurements; not the budget, which may be raised."""
+    device = asdict(options.device) if options.device else None
+    rows = [bench.row_key((pair, each)) for pair in seen.overlapping for each in probes()]
+    names = [str(each) for each in chosen]
+    return content_hash([rows, names, options.objective, options.sure, options.seed, device])

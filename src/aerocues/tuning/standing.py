@@ -1,0 +1,65 @@
+"""How combinations stand after a race: what was measured of each, in the order of their scores."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from aerocues.evaluation.medians import METHODS
+from aerocues.methods.combination import Combination
+from aerocues.tuning.bench import Bench
+from aerocues.tuning.device import Device
+from aerocues.tuning.image_arena import rows_frame
+from aerocues.tuning.race import RaceOutcome
+
+if TYPE_CHECKING:
+    import polars as pl
+
+MEDIANS = ("precision_beyond_chance", "precision", "excess_inliers", "inliers")
+
+
+def standing(
+    bench: Bench,
+    combinations: Sequence[Combination],
+    pairs: Sequence[int],
+    outcome: RaceOutcome,
+    device: Device | None,
+) -> pl.DataFrame:
+    """One row a combination that was measured with success; see `recommend.Recommendation`."""
+    import polars as pl
+
+    rows = [
+        row
+        for a, p in np.argwhere(outcome.known)
+        if (row := bench.row((pairs[p], combinations[a]))) is not None
+    ]
+    table = rows_frame([device.there(row) if device else row for row in rows])
+    scores = pl.DataFrame(
+        {
+            "combination": [str(each) for each in combinations],
+            "score": outcome.scores,
+            "probability": outcome.probability,
+        }
+    )
+    succeeded = pl.col("status") == "ok"
+
+    def of_one_image(stage: str) -> pl.Expr:
+        both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
+        return (both / 2).median().alias(f"{stage}_seconds")
+
+    return (
+        table.group_by(pl.concat_str(METHODS, separator="-").alias("combination"))
+        .agg(
+            pl.len().alias("pairs"),
+            succeeded.sum().alias("succeeded"),
+            *(pl.when(succeeded).then(pl.col(name)).median().alias(name) for name in MEDIANS),
+            of_one_image("detect"),
+            of_one_image("describe"),
+            pl.col("match_seconds", "verify_seconds", "total_seconds").median(),
+        )
+        .filter(pl.col("succeeded") > 0)
+        .join(scores, on="combination")
+        .sort("score", "combination", descending=[True, False])
+    )

@@ -1,0 +1,82 @@
+"""What measurements are worth under an objective, with bounds and weights held still.
+
+Bounds and weights come from the table that is expected; tables drawn around it are valued under
+the same ones, for drawn ones would only add noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.scoring.aggregation import aggregate
+from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.objectives import TIME, Objective
+from aerocues.scoring.settings import ScoreSettings
+from aerocues.scoring.weights import weights_by_method
+from aerocues.tuning.scales import Array
+
+
+class Valuation:
+    """Scores of alternatives under an objective.
+
+    Parameters
+    ----------
+    expected : (A, P, C) float64
+        What is known or expected; it sets the bounds and weights.
+    criteria : sequence of Criterion
+    blocks : (P,) int64
+    settings : ScoreSettings
+    objective : Objective
+    """
+
+    def __init__(
+        self,
+        expected: Array,
+        criteria: Sequence[Criterion],
+        blocks: NDArray[np.int64],
+        settings: ScoreSettings,
+        objective: Objective,
+    ) -> None:
+        self._objective = objective
+        self._alpha = settings.alpha
+        self._is_cost = np.array([each.better == "lower" for each in criteria])
+        names = [each.name for each in criteria]
+        self._time = names.index(TIME) if objective.time_power else None
+        self._low = expected.min(axis=(0, 1))
+        high = expected.max(axis=(0, 1))
+        self._width = np.where(high > self._low, high - self._low, 1.0)
+        self._member = _membership(blocks)
+        matrix = self._normalised(expected.mean(axis=1))
+        by_method = weights_by_method(matrix[None], settings.weights)
+        estimated = aggregate(by_method, settings.aggregation)[0]
+        self.weights = objective.weights(estimated, criteria)
+
+    def _normalised(self, values: Array) -> Array:
+        share = (values - self._low) / self._width
+        upright = np.where(self._is_cost, 1.0 - share, share)
+        powered: Array = np.clip(upright, 0.0, 1.0) ** self._alpha
+        return powered
+
+    def of(self, values: Array) -> Array:
+        """(A,) scores of (A, P, C) values."""
+        mean = values.mean(axis=1)
+        if self._objective.worst < 1.0:
+            by_block = np.einsum("apc,bp->abc", values, self._member)
+            scores = self._objective.over_blocks(self._normalised(by_block) @ self.weights)
+        else:
+            scores = self._normalised(mean) @ self.weights
+        if self._time is not None:
+            scores = scores * self._objective.hurry(mean[:, self._time])
+        return np.asarray(scores)
+
+
+def _membership(blocks: NDArray[np.int64]) -> Array:
+    """(B, P): what a pair counts in the mean of a block; of one block, each pair is its own."""
+    names = np.unique(blocks)
+    if len(names) == 1:
+        return np.eye(len(blocks))
+    member = (blocks[None] == names[:, None]).astype(np.float64)
+    return np.asarray(member / member.sum(axis=1, keepdims=True))
