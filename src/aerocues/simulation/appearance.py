@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from aerocues.simulation.compiled import compiled
+from aerocues.compiled import compiled
 from aerocues.simulation.lighting import Light, sky_seen, sunlit
 from aerocues.simulation.noise import changing_noise, resolved
 from aerocues.simulation.surfaces import Material, Rgb

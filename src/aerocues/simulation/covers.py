@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.simulation.compiled import compiled
+from aerocues.compiled import compiled
 from aerocues.simulation.ground import CELL, Cover, Plan
 from aerocues.simulation.noise import fractal_noise, hashed, resolved
 from aerocues.simulation.surfaces import Rgb, laid, mixed, scaled

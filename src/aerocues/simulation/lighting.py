@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.simulation.compiled import compiled
+from aerocues.compiled import compiled
 from aerocues.simulation.mesh import Mesh
 from aerocues.simulation.rasterizer import nearest
 from aerocues.simulation.surfaces import Rgb

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from aerocues.simulation.compiled import compiled
+from aerocues.compiled import compiled
 
 
 @compiled

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from enum import IntEnum
 
-from aerocues.simulation.compiled import compiled
+from aerocues.compiled import compiled
 from aerocues.simulation.noise import fractal_noise, hashed, resolved
 
 Rgb = tuple[float, float, float]
