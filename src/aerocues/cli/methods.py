@@ -109,7 +109,9 @@ def _facts(found: Methods, preset: str) -> dict[str, Any]:
             {**_describe(row), "dtype": row.dtype} for row in found.descriptors.values()
         ],
         "norms": [{"name": row.name, "title": row.title} for row in found.norms.values()],
-        "matchers": [{**_describe(row), "title": row.title} for row in found.matchers.values()],
+        "matchers": [
+            {**_describe(row), "title": row.title} for row in found.every_matcher.values()
+        ],
         "problems": list(found.problems),
     }
 
@@ -131,7 +133,7 @@ def _print_methods(found: Methods, preset: str) -> None:
     sections: tuple[tuple[str, Mapping[str, Row]], ...] = (
         ("Detectors", found.detectors),
         ("Descriptors", found.descriptors),
-        ("Matchers", found.matchers),
+        ("Matchers", found.every_matcher),
     )
     for title, rows in sections:
         table.add_row(Text(title, style="bold"))

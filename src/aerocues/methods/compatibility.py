@@ -87,7 +87,7 @@ def incompatibility(combination: Combination, methods: Methods) -> tuple[str, st
     """
     methods.require(combination)
     descriptor = methods.descriptors[combination.descriptor]
-    matcher = methods.matchers[combination.matcher]
+    matcher = methods.every_matcher[combination.matcher]
     for rule in RULES:
         reason = rule.reason(combination, descriptor, matcher)
         if reason is not None:
@@ -117,7 +117,7 @@ def why_unavailable(combination: Combination, methods: Methods) -> str | None:
     for row in (
         methods.detectors[combination.detector],
         methods.descriptors[combination.descriptor],
-        methods.matchers[combination.matcher],
+        methods.every_matcher[combination.matcher],
     ):
         if row.unavailable:
             return f"{row.name} is unavailable: {row.unavailable}"

@@ -15,7 +15,7 @@ from aerocues.methods.compatibility import (
     why_unavailable,
 )
 from aerocues.methods.registry import Methods
-from aerocues.methods.selection import split_names
+from aerocues.methods.selection import split_names, takes
 
 UNAVAILABLE = "a method is unavailable here"
 MEANINGLESS = "runs but means nothing: L2 norm on strings of bits (--all runs it)"
@@ -63,8 +63,8 @@ def named(
     kept_descriptors = split_names(descriptors) or ["*"]
     return [
         combination
-        for combination in methods.combinations()
-        if _matches(str(combination), texts)
+        for combination in methods.combinations(on_request=True)
+        if any(takes(text, combination, methods) for text in texts)
         and not _matches(str(combination), unwanted)
         and _matches(combination.detector, kept_detectors)
         and _matches(combination.descriptor, kept_descriptors)

@@ -24,7 +24,7 @@ def explain(text: str, methods: Methods) -> str:
         ("detector", combination.detector, methods.detectors),
         ("descriptor", combination.descriptor, methods.descriptors),
         ("norm", combination.norm, methods.norms),
-        ("matcher", combination.matcher, methods.matchers),
+        ("matcher", combination.matcher, methods.every_matcher),
     ):
         if name not in known:
             raise SelectionError(f"there is no {kind} {name}; {_close(name, known)}")

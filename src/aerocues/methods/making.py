@@ -164,7 +164,7 @@ def make_descriptor(methods: Methods, name: str, detector: str = "") -> Descript
 
 def make_matcher(methods: Methods, name: str, norm: str) -> MatcherStage:
     """Make the matcher `name` for a norm; MethodUnavailableError where it cannot be made."""
-    row = methods.matchers[name]
+    row = methods.every_matcher[name]
     parameters = dict(row.parameters.get(norm, {}))
     if row.origin != OPENCV:
         return ArrayMatcher(_plugin(row.factory, parameters), norm)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from aerocues.methods.descriptors import DescriptorType
-from aerocues.methods.parameters import OPENCV, Value
+from aerocues.methods.parameters import AEROCUES, OPENCV, Value
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class MatcherRow:
         The element types that it can match under each norm.
     factory : str
         The class of OpenCV that matches, a key of `aerocues.methods.making.OPENCV_MATCHERS`, or
-        ``module:attribute`` of a plug-in.
+        ``module:attribute`` of a plug-in or of aerocues.
     origin, unavailable
         As for a detector.
     """
@@ -81,3 +81,14 @@ MATCHERS: tuple[MatcherRow, ...] = (
         factory="FlannBasedMatcher",
     ),
 )
+
+EXACT = MatcherRow(
+    "EXACT",
+    "the matches of BF, many times sooner; only where it is named",
+    "exact nearest neighbours by counted bits and products of matrices",
+    {"L2": {}, "HAM": {}},
+    {"L2": ("float32", "uint8"), "HAM": ("uint8",)},
+    factory="aerocues.methods.exact.matching:ExactMatcher",
+    origin=AEROCUES,
+)
+"""What aerocues itself adds to OpenCV's matchers."""

@@ -11,6 +11,7 @@ from aerocues.errors import MethodUnavailableError
 
 Value = bool | int | float | str
 OPENCV = "opencv"
+AEROCUES = "aerocues"
 NEXT_STEP = "install opencv-contrib-python-headless 4.11 to 5.x in place of other OpenCV builds"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
@@ -109,13 +109,13 @@ def installed_methods() -> Methods:
     base = opencv_methods()
     detectors, descriptors = dict(base.detectors), dict(base.descriptors)
     matchers = dict(base.matchers)
-    known: dict[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]] = {
-        "detector": detectors,
-        "descriptor": descriptors,
-        "matcher": matchers,
-    }
     problems: list[str] = []
     for plug_in in _plug_ins():
+        known: dict[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]] = {
+            "detector": detectors,
+            "descriptor": descriptors,
+            "matcher": {**matchers, **base.on_request},
+        }
         if problem := _why_left_out(plug_in, known):
             problems.append(problem)
             continue
@@ -126,4 +126,10 @@ def installed_methods() -> Methods:
             descriptors[plug_in.name] = _descriptor(plug_in, declared)
         if "matcher" in KINDS[plug_in.group]:
             matchers[plug_in.name] = _matcher(plug_in, declared)
-    return Methods(detectors, descriptors, base.norms, matchers, tuple(problems))
+    return replace(
+        base,
+        detectors=detectors,
+        descriptors=descriptors,
+        matchers=matchers,
+        problems=tuple(problems),
+    )

@@ -10,7 +10,7 @@ from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
-from aerocues.methods.matchers import MATCHERS, NORMS, MatcherRow, NormRow
+from aerocues.methods.matchers import EXACT, MATCHERS, NORMS, MatcherRow, NormRow
 from aerocues.methods.parameters import OPENCV
 from aerocues.methods.presets import Overrides, Preset
 
@@ -21,6 +21,7 @@ class Methods:
 
     ``on_detectors`` has what differs for a descriptor on the keypoints of one detector, by
     "DETECTOR-DESCRIPTOR". ``problems`` tells of plug-ins that are left out, one sentence each.
+    Matchers in ``on_request`` take part only where they are named: nothing else includes them.
     """
 
     detectors: Mapping[str, DetectorRow]
@@ -29,6 +30,12 @@ class Methods:
     matchers: Mapping[str, MatcherRow]
     problems: tuple[str, ...] = ()
     on_detectors: Overrides = field(default_factory=dict)
+    on_request: Mapping[str, MatcherRow] = field(default_factory=dict)
+
+    @property
+    def every_matcher(self) -> Mapping[str, MatcherRow]:
+        """The matchers by name, and those on request."""
+        return {**self.matchers, **self.on_request}
 
     def descriptor_on(self, descriptor: str, detector: str) -> DescriptorRow:
         """The row of a descriptor as it describes the keypoints of a detector."""
@@ -36,9 +43,13 @@ class Methods:
         own = self.on_detectors.get(f"{detector}-{descriptor}")
         return replace(row, parameters={**row.parameters, **own}) if own else row
 
-    def combinations(self) -> Iterator[Combination]:
-        """Every combination that can be written down, runnable or not."""
-        for names in product(self.detectors, self.descriptors, self.norms, self.matchers):
+    def combinations(self, *, on_request: bool = False) -> Iterator[Combination]:
+        """Every combination that can be written down, runnable or not.
+
+        Those of matchers on request are left out without `on_request`.
+        """
+        matchers = self.every_matcher if on_request else self.matchers
+        for names in product(self.detectors, self.descriptors, self.norms, matchers):
             yield Combination(*names)
 
     def require(self, combination: Combination) -> None:
@@ -53,7 +64,7 @@ class Methods:
             ("detector", combination.detector, self.detectors),
             ("descriptor", combination.descriptor, self.descriptors),
             ("norm", combination.norm, self.norms),
-            ("matcher", combination.matcher, self.matchers),
+            ("matcher", combination.matcher, self.every_matcher),
         ):
             if name not in known:
                 raise SelectionError(f"there is no {kind} {name}; known are {', '.join(known)}")
@@ -62,7 +73,7 @@ class Methods:
         """Everything that decides what the methods of `combination` compute."""
         detector = self.detectors[combination.detector]
         descriptor = self.descriptor_on(combination.descriptor, combination.detector)
-        matcher = self.matchers[combination.matcher]
+        matcher = self.every_matcher[combination.matcher]
         return {
             "detector": [detector.origin, detector.factory, dict(detector.parameters)],
             "descriptor": [descriptor.origin, descriptor.factory, dict(descriptor.parameters)],
@@ -94,10 +105,11 @@ class Methods:
 
 
 def opencv_methods() -> Methods:
-    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers."""
+    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers; EXACT on request."""
     return Methods(
         {row.name: row for row in DETECTORS},
         {row.name: row for row in DESCRIPTORS},
         {row.name: row for row in NORMS},
         {row.name: row for row in MATCHERS},
+        on_request={EXACT.name: EXACT},
     )

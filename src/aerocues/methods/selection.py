@@ -22,11 +22,20 @@ def split_names(names: str | Iterable[str] | None) -> list[str]:
     return [part.strip().upper() for part in parts if part.strip()]
 
 
-def runnable(methods: Methods) -> list[Combination]:
-    """Every combination that OpenCV or a plug-in can run here."""
+def takes(pattern: str, combination: Combination, methods: Methods) -> bool:
+    """Whether a pattern in upper case takes a combination.
+
+    Wildcards alone do not take those with a matcher on request.
+    """
+    asked_for = combination.matcher in methods.matchers or combination.matcher in pattern
+    return asked_for and fnmatchcase(str(combination), pattern)
+
+
+def runnable(methods: Methods, *, on_request: bool = False) -> list[Combination]:
+    """Every combination that OpenCV or a plug-in can run here; see `Methods.combinations`."""
     return [
         combination
-        for combination in methods.combinations()
+        for combination in methods.combinations(on_request=on_request)
         if why_incompatible(combination, methods) is None
         and why_unavailable(combination, methods) is None
     ]
@@ -42,8 +51,8 @@ def meaningful(methods: Methods) -> list[Combination]:
 
 
 def _unmatched(pattern: str, methods: Methods) -> SelectionError:
-    everything = list(methods.combinations())
-    matched = [text for text in everything if fnmatchcase(str(text), pattern)]
+    everything = list(methods.combinations(on_request=True))
+    matched = [combination for combination in everything if takes(pattern, combination, methods)]
     if matched:
         first = matched[0]
         reason = (
@@ -88,7 +97,8 @@ def select(
     methods : Methods
     patterns : str or iterable of str, optional
         Globs over the text form, separated by commas, in any case; a leading ``!`` takes out. A
-        full name without wildcards is taken even where it is runnable but not meaningful.
+        full name without wildcards is taken even where it is runnable but not meaningful. A
+        matcher on request must be named.
     detectors, descriptors : str or iterable of str, optional
         Names or globs of the detectors and descriptors to keep.
     everything : bool
@@ -104,15 +114,15 @@ def select(
     SelectionError
         If a pattern selects nothing.
     """
-    can_run = runnable(methods)
-    usual = set(can_run if everything else meaningful(methods))
+    can_run = runnable(methods, on_request=True)
+    usual = [each for each in can_run if everything or why_meaningless(each, methods) is None]
     wanted = split_names(patterns)
     includes = [pattern for pattern in wanted if not pattern.startswith("!")]
     excludes = [pattern[1:] for pattern in wanted if pattern.startswith("!")]
-    chosen: set[Combination] = set() if includes else set(usual)
-    for pattern in includes:
-        pool = usual if WILDCARDS & set(pattern) else set(can_run)
-        found = {candidate for candidate in pool if fnmatchcase(str(candidate), pattern)}
+    chosen: set[Combination] = set()
+    for pattern in includes or ["*"]:
+        pool = usual if WILDCARDS & set(pattern) else can_run
+        found = {candidate for candidate in pool if takes(pattern, candidate, methods)}
         if not found:
             raise _unmatched(pattern, methods)
         chosen |= found

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.datasets.dataset import PinholeCamera
 from aerocues.compiled import compiled
+from aerocues.datasets.dataset import PinholeCamera
 from aerocues.simulation.mesh import Mesh
 
 NEAR = 0.2

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.compiled import compiled
 from aerocues.datasets.dataset import PinholeCamera
 from aerocues.simulation.appearance import glint, lit, sky, through_air
 from aerocues.simulation.camera import Pose, enlarged
-from aerocues.compiled import compiled
 from aerocues.simulation.covers import ground_colour
 from aerocues.simulation.ground import Plan
 from aerocues.simulation.lighting import Light

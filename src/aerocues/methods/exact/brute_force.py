@@ -24,8 +24,9 @@ def mutual(first: DescriptorArray, second: DescriptorArray, norm: str) -> Matche
     distances, nearest = cv2.batchDistance(
         first, second, dtype, normType=constant, K=1, crosscheck=True
     )
-    rows = np.flatnonzero(nearest[:, 0] >= 0)
-    indices = np.stack([rows, nearest[rows, 0]], axis=1).astype(np.int32)
+    (rows,) = (nearest[:, 0] >= 0).nonzero()
+    indices = np.empty((len(rows), 2), np.int32)
+    indices[:, 0], indices[:, 1] = rows, nearest[rows, 0]
     return Matches(indices, distances[rows, 0].astype(np.float32))
 
 

@@ -9,8 +9,6 @@ candidate, and OpenCV's own distances decide among candidates.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -105,10 +103,12 @@ class _Contest:
         own = near + start
         self._smallest[own] = np.minimum(self._smallest[own], smallest[near])
         limits[near] = self._smallest[own] * self._growth + self._margin[own]
-        where = [np.arange(size) for size in tile.shape]
-        where[self._axis] = near
+        rows, columns = (np.arange(size) for size in tile.shape)
+        rows, columns = (near, columns) if self._axis == 0 else (rows, near)
         each = np.broadcast_to(np.expand_dims(limits, 1 - self._axis), tile.shape)
-        self._count = _note(tile, *where, each, origin, self._places, self._values, self._count)
+        self._count = _note(
+            tile, rows, columns, each, origin, self._places, self._values, self._count
+        )
         return self._count <= len(self._values)
 
     def decide(self, first: DescriptorArray, second: DescriptorArray) -> NDArray[np.int32]:
@@ -123,6 +123,15 @@ class _Contest:
         _, winners = np.unique(own[order], return_index=True)
         nearest: NDArray[np.int32] = other[order[winners]]
         return nearest
+
+
+def pays(rows: int, columns: int, numbers: int) -> bool:
+    """Whether `nearest_both_ways` takes less time than OpenCV, by sizes of the table and of rows.
+
+    Fitted to measured times: OpenCV's grows with the places of the table, that of this way with
+    its rows and columns at first.
+    """
+    return rows * columns * (numbers + 20) > 1_500_000 + 12 * (rows + columns) * (numbers + 100)
 
 
 def nearest_both_ways(

@@ -7,35 +7,36 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from aerocues.compiled import compiled
+from aerocues.methods.arrays import Float32Array, Int32Array
 
 Words = NDArray[np.uint32]
 Keys = NDArray[np.uint64]
 
 WORD_BYTES = 4
-# What a compiled sweep counts in one go: more would not stay in the registers.
-LONGEST_GROUP = 16
-# Words of the second descriptors that a sweep keeps at hand, 16 KB: half the nearest cache.
-BLOCK_WORDS = 4096
-WIDEST_BLOCK = 512
+# Words that a sweep counts in one go, at most: those of both descriptors stay in registers.
+LONGEST_GROUP = 8
+# Second descriptors that a sweep keeps at hand: 256 of 64 bytes fill half of the nearest cache.
+BLOCK = 256
 # Distances and indices share the 32 bits of a key, in halves.
 LONGEST_DESCRIPTOR = 65535 // 8
 ROWS_AT_ONCE = 65536
 
 
-@intrinsic
-def _bit_count(typing_context: Any, word: Any) -> Any:
-    """The number of bits that are set; one instruction where the processor has it."""
+def _typed_bit_count(typing_context: Any, word: Any) -> Any:
+    """Tell numba how to count the bits of a word: by one instruction, where there is one."""
 
-    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.ctpop(arguments[0])
 
     return types.uint32(types.uint32), generate
+
+
+_bit_count: Any = intrinsic(_typed_bit_count)
 
 
 @cache
@@ -96,7 +97,7 @@ def _sweep_of(group: int) -> Callable[..., None]:
 
 def nearest_both_ways(
     first: NDArray[np.uint8], second: NDArray[np.uint8]
-) -> tuple[Keys, NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[Float32Array, Int32Array, Int32Array]:
     """The nearest of each row of `first`, and of each row of `second`; of equals the first.
 
     Parameters
@@ -106,11 +107,11 @@ def nearest_both_ways(
 
     Returns
     -------
-    distances : (N,) uint64
+    distances : (N,) float32
         Bits that differ between each row of `first` and its nearest.
-    forth : (N,) int64
+    forth : (N,) int32
         Rows of `second`.
-    back : (M,) int64
+    back : (M,) int32
         Rows of `first`.
     """
     words = -(-first.shape[1] // WORD_BYTES)
@@ -122,13 +123,16 @@ def nearest_both_ways(
     column_keys = np.full(len(columns), np.iinfo(np.uint64).max, np.uint64)
     for start in range(0, len(rows), ROWS_AT_ONCE):
         part = slice(start, start + ROWS_AT_ONCE)
-        keys = np.full((len(blocks), blocks.shape[2]), 0xFFFFFFFF, np.uint32)
+        keys = np.full((len(blocks), BLOCK), np.iinfo(np.uint32).max, np.uint32)
         _sweep_of(group)(rows[part], blocks, row_keys[part], keys, len(columns))
-        wide = keys.ravel()[: len(columns)].astype(np.uint64)
-        wide = (wide >> 16 << 32) | ((wide & 0xFFFF) + start)
-        np.minimum(column_keys, wide, out=column_keys)
-    forth, back = ((keys & 0xFFFFFFFF).astype(np.int64) for keys in (row_keys, column_keys))
-    return row_keys >> 32, forth, back
+        found = keys.ravel()[: len(columns)].astype(np.uint64)
+        bits, row = found >> np.uint64(16), found & np.uint64(0xFFFF)
+        np.minimum(column_keys, bits << np.uint64(32) | row + np.uint64(start), out=column_keys)
+    distances = (row_keys >> np.uint64(32)).astype(np.float32)
+    forth, back = (
+        (keys & np.uint64(0xFFFFFFFF)).astype(np.int32) for keys in (row_keys, column_keys)
+    )
+    return distances, forth, back
 
 
 def _as_words(descriptors: NDArray[np.uint8], words: int) -> Words:
@@ -141,7 +145,6 @@ def _as_words(descriptors: NDArray[np.uint8], words: int) -> Words:
 def _in_blocks(columns: Words) -> Words:
     """Descriptors in blocks (B, W, C), so that the same word of neighbours lies side by side."""
     count, words = columns.shape
-    width = max(min(BLOCK_WORDS // words // 64 * 64, WIDEST_BLOCK), 64)
-    padded = np.zeros((-(-count // width), width, words), np.uint32)
+    padded = np.zeros((-(-count // BLOCK), BLOCK, words), np.uint32)
     padded.reshape(-1, words)[:count] = columns
     return np.ascontiguousarray(padded.transpose(0, 2, 1))
