@@ -23,6 +23,7 @@ class Timing(StrEnum):
 
     SHARED = "shared"
     EXCLUSIVE = "exclusive"
+    ESTIMATED = "estimated"
 
 
 def run(
@@ -76,7 +77,10 @@ def run(
         int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
     ] = None,
     timing: Annotated[
-        Timing, typer.Option(help="exclusive: one worker with the machine to itself.")
+        Timing,
+        typer.Option(
+            help="exclusive: one worker has the machine; estimated: brute force on a part."
+        ),
     ] = Timing.SHARED,
     seed: Annotated[
         int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")

@@ -9,7 +9,9 @@ from typing import Literal
 from aerocues.methods.combination import Combination
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 
-Timing = Literal["exclusive", "shared"]
+Timing = Literal["exclusive", "shared", "estimated"]
+# From what says least of a machine to what says most.
+TIMINGS: tuple[Timing, ...] = ("estimated", "shared", "exclusive")
 
 # Raised whenever the same images and methods would give other rows: old rows are then redone.
 MEASUREMENT_VERSION = 2
@@ -63,8 +65,8 @@ class MeasurementProtocol:
     """How combinations are measured; recorded with every result.
 
     ``chance`` is None where no chance test is asked for. ``timing`` is ``exclusive`` where a
-    stage has the machine's core to itself, ``shared`` where several workers run at once. ``limit``
-    is how many keypoints of an image are kept. ``thresholds`` has inlier thresholds in pixels of
+    stage has the machine's core to itself, ``shared`` where several workers run at once,
+    ``estimated`` where, besides, brute force is timed on a part of the descriptors. ``limit`` is how many keypoints of an image are kept. ``thresholds`` has inlier thresholds in pixels of
     "DETECTOR-DESCRIPTOR" that differ from the one of ``verification``.
     """
 

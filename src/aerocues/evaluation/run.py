@@ -150,8 +150,9 @@ def run(
         Preset of parameters and protocol, or the file of one; see `aerocues.methods.presets`.
     seed : int
         Set before every stage call.
-    timing : {"shared", "exclusive"}
-        Whether several stages may run at once; quality does not depend on it.
+    timing : {"shared", "exclusive", "estimated"}
+        Whether several stages may run at once, and whether brute force is timed on a part of the
+        descriptors only; quality does not depend on it.
     limit : KeypointLimit
         How many keypoints of an image are kept; all by default.
     limits : Limits, optional

@@ -156,7 +156,11 @@ PROVENANCE: tuple[Column, ...] = (
     _text("opencv_version", "version of OpenCV"),
     _text("machine", "processor that measured"),
     Column("seed", "integer", "", "seed set before every stage call"),
-    _text("timing", "exclusive: a core of its own; shared: several workers at once"),
+    _text(
+        "timing",
+        "exclusive: a core of its own; shared: several workers at once; estimated: "
+        "shared, with brute force timed on a part of the descriptors",
+    ),
     Column("measured_at", "float", "s", "when the row was measured, in seconds since 1970 (UTC)"),
     _text("settings_key", "hash of preset, protocol and versions: equal within one table"),
     _text("row_key", "hash of everything that decides the row"),

@@ -13,6 +13,7 @@ from aerocues.errors import StoreError
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
+from aerocues.evaluation.protocol import TIMINGS, Timing
 from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
@@ -160,10 +161,10 @@ class Store(ReconstructionStore):
         """The finished parts."""
         return sorted(self._parts.glob("*.parquet"))
 
-    def present(self, timing: str, *, retry_failed: bool) -> frozenset[str]:
+    def present(self, timing: Timing, *, retry_failed: bool) -> frozenset[str]:
         """Keys of the rows that need not be measured again.
 
-        Rows with shared times do not serve where exclusive ones are asked for; the converse does.
+        Rows with worse times do not serve where better ones are asked for; the converse does.
         """
         parts = self.parts()
         if not parts:
@@ -171,8 +172,8 @@ class Store(ReconstructionStore):
         import polars as pl
 
         rows = self._scan(parts).select("row_key", "status", "timing")
-        if timing == "exclusive":
-            rows = rows.filter(pl.col("timing") == "exclusive")
+        good_enough = TIMINGS[TIMINGS.index(timing) :]
+        rows = rows.filter(pl.col("timing").is_in(good_enough))
         if retry_failed:
             rows = rows.filter(~pl.col("status").is_in(RETRIED))
         return frozenset(self._collect(rows)["row_key"].to_list())
@@ -181,7 +182,7 @@ class Store(ReconstructionStore):
         """The measured ones among the planned rows, each once, in order.
 
         Where a row was measured more than once, one that did not fail counts before one that did,
-        exclusive times before shared ones, and then the latest.
+        better times before worse ones (`protocol.TIMINGS`), and then the latest.
         """
         import polars as pl
 
@@ -195,7 +196,9 @@ class Store(ReconstructionStore):
             .drop(IDENTITY_NAMES)
             .sort(
                 ~pl.col("status").is_in(RETRIED),
-                pl.col("timing") == "exclusive",
+                pl.col("timing").replace_strict(
+                    {name: rank for rank, name in enumerate(TIMINGS)}, default=-1
+                ),
                 "measured_at",
                 nulls_last=False,
             )

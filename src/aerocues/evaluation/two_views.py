@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
+from aerocues.evaluation.brute_force_time import SampledBruteForce
 from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.evaluation.features import run_stage
 from aerocues.evaluation.metrics import Row
@@ -18,6 +19,7 @@ from aerocues.methods.arrays import Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
 
+BRUTE_FORCE = "BF"
 Announce = Callable[[StageCall], None]
 
 
@@ -66,6 +68,11 @@ class TwoViewMeasurement:
             )
         matcher = self._matchers[kind]
         first, second = (described.features for described in views.described)
+        if combination.matcher == BRUTE_FORCE and self._context.protocol.timing == "estimated":
+            sampled = SampledBruteForce(matcher, combination.norm, self._clock)
+            matches, time = run_stage(what, lambda: sampled.match(first, second))
+            record_time(row, "match_seconds", time)
+            return matches
         cv2.setRNGSeed(self._context.protocol.seed)
         raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
         record_time(row, "match_seconds", time)
