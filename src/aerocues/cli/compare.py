@@ -59,6 +59,14 @@ def compare(
         str | None,
         typer.Option(metavar="FILE", help="Write scores and ranks as CSV; - is standard output."),
     ] = None,
+    factors: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write how much longer each stage takes in the second results than in the first: "
+            "for 'recommend --device'.",
+        ),
+    ] = None,
 ) -> None:
     """Compare rankings across data sets, and times across machines."""
     import aerocues
@@ -79,6 +87,8 @@ def compare(
         )
         comparison = compare_datasets(entries, over.value)
         machines = compare_machines(entries, over.value)
+        if factors is not None:
+            _write_factors(entries, factors)
     if csv is not None:
         frame = comparison.versatility().rename({"alternative": "combination"})
         write_table(frame, csv, "csv", "combination")
@@ -88,6 +98,24 @@ def compare(
         print_json(_facts(entries, comparison, machines))
     else:
         _print(entries, comparison, machines, top, reconstruction=reconstruction)
+
+
+def _write_factors(entries: list[Entry], file: Path) -> None:
+    from aerocues.errors import ScoreError
+    from aerocues.evaluation.export import write_file
+    from aerocues.evaluation.whole_files import json_content
+    from aerocues.scoring.platforms import device_factors
+
+    if len(entries) != 2 or entries[0].dataset != entries[1].dataset:
+        raise ScoreError("--factors needs two results of the same data set, from two machines")
+    here, there = entries
+    content = {
+        "machine": there.machine,
+        "measured_on": here.machine,
+        "dataset": here.dataset,
+        "stages": device_factors(here.rows, there.rows),
+    }
+    write_file(file, json_content(content))
 
 
 def _facts(

@@ -15,6 +15,7 @@ from aerocues.cli import (
     datasets,
     importing,
     methods,
+    recommend,
     reconstruct,
     report,
     results,
@@ -40,6 +41,7 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
 )
+app.command("recommend")(recommend.recommend)
 app.command("run")(run.run)
 app.command("status")(status.status)
 app.command("results")(results.results)

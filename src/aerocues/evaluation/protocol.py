@@ -66,7 +66,8 @@ class MeasurementProtocol:
 
     ``chance`` is None where no chance test is asked for. ``timing`` is ``exclusive`` where a
     stage has the machine's core to itself, ``shared`` where several workers run at once,
-    ``estimated`` where, besides, brute force is timed on a part of the descriptors. ``limit`` is how many keypoints of an image are kept. ``thresholds`` has inlier thresholds in pixels of
+    ``estimated`` where, besides, brute force is timed on a part of the descriptors. ``limit`` is
+    how many keypoints of an image are kept. ``thresholds`` has inlier thresholds in pixels of
     "DETECTOR-DESCRIPTOR" that differ from the one of ``verification``.
     """
 

@@ -38,14 +38,13 @@ class Journal:
     def read(cls, folder: Path, key: str) -> Journal:
         """The journal of the race with this key; an empty one where there is none."""
         path = folder / RACE
+        races = _races(path)
         try:
-            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-            if content["key"] == key:
-                steps = [(float(spent), list(missing)) for spent, missing in content["steps"]]
-                return cls(path, key, steps, float(content["begun"]))
-        except (OSError, ValueError, KeyError, TypeError):
-            pass  # none, or a damaged one: what was measured is there all the same
-        return cls(path, key)
+            content = races[key]
+            steps = [(float(spent), list(missing)) for spent, missing in content["steps"]]
+            return cls(path, key, steps, float(content["begun"]))
+        except (KeyError, TypeError, ValueError):
+            return cls(path, key)  # none, or damaged: what was measured is there all the same
 
     @property
     def spent(self) -> float:
@@ -63,5 +62,14 @@ class Journal:
         self._write()
 
     def _write(self) -> None:
-        content = {"key": self.key, "steps": self.steps, "begun": self.begun}
-        write_whole({self.path: json_content(content)})
+        races = {**_races(self.path), self.key: {"steps": self.steps, "begun": self.begun}}
+        write_whole({self.path: json_content(races)})
+
+
+def _races(path: Path) -> dict[str, Any]:
+    """Everything that the file holds, by key; nothing where it cannot be read."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}

@@ -188,10 +188,10 @@ def recommend(
     objective, parts = objective_named(options.objective), as_preset(preset)
     pairs = spread_pairs(dataset.pairs, options.pairs)
     part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
-    context = make_context(part, parts, seed=options.seed, limit=limit)
+    context = make_context(part, parts, seed=options.seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
     store = Store.create(Path(output))
-    engine_here = local_engine(limits or Limits(), "shared")
+    engine_here = local_engine(limits or Limits(), "estimated")
     with store.writing(), engine_here.standing(context) as engine:
         asked = list(dict.fromkeys([*chosen, *probes()]))
         bench = Bench(context, asked, store, parts, follower.hashing)

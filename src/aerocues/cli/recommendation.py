@@ -1,0 +1,194 @@
+"""A recommendation in words."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from aerocues.cli.console import count, plain_table
+from aerocues.cli.progress import spoken_seconds
+
+if TYPE_CHECKING:
+    import polars as pl
+    from rich.table import Table
+
+    from aerocues.tuning.race import RaceOutcome
+    from aerocues.tuning.recommend import Recommendation
+
+WIDTH = 100
+PROBABLE = 0.5
+# Those that are named as possible winners have so much of the probability together.
+TOGETHER = 0.9
+MOST_NAMED = 8
+GOOD = 0.9
+"""Share of the best score from which on a combination counts as good."""
+FASTER = 2.0
+ENDS = {
+    "budget": "the budget is spent",
+    "sure": "sure enough",
+    "measured": "nothing is left to measure",
+}
+
+
+def answer(found: Recommendation) -> str:
+    """What to take, how sure that is, why, and what it costs."""
+    best = found.ranked.row(0, named=True)
+    parts = [
+        f"Take {found.best}.",
+        "",
+        _paragraph(_how_sure(found, best)),
+        "",
+        *_labelled("why", _why(found, best)),
+        *_labelled("costs", _costs(found, best)),
+        *_labelled("faster", _faster(found, best)),
+        *_labelled("note", _notes(found)),
+    ]
+    return "\n".join(parts)
+
+
+def _paragraph(text: str) -> str:
+    return textwrap.fill(text, WIDTH, break_on_hyphens=False, break_long_words=False)
+
+
+def _labelled(label: str, sentences: list[str]) -> list[str]:
+    """Sentences below each other, with a label before the first."""
+    lines = []
+    for number, sentence in enumerate(sentences):
+        begin = f"{label if not number else '':9}"
+        lines.append(
+            textwrap.fill(
+                sentence,
+                WIDTH,
+                initial_indent=begin,
+                subsequent_indent=" " * 9,
+                break_on_hyphens=False,
+                break_long_words=False,
+            )
+        )
+    return lines
+
+
+def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
+    outcome, chance = found.outcome, best["probability"]
+    measured = int(outcome.known.sum())
+    spent = spoken_seconds(outcome.rounds[-1].spent)
+    basis = (
+        f"{count(measured, 'measurement')} of {count(found.measured, 'combination')} on "
+        f"{count(len(found.seen.overlapping), 'pair')} in {spent} ({ENDS[outcome.ended]})"
+    )
+    told = f"the best of {found.combinations} for {found.objective.title}"
+    if chance >= PROBABLE:
+        first = f"With a probability of {chance:.0%} it is {told}"
+    else:
+        first = f"It leads as {told}, though with a probability of {chance:.0%} only"
+    names = possible_winners(found.ranked)
+    others = [name for name in names if name != found.best]
+    if not others:
+        return f"{first}: {basis}."
+    named = ", ".join(others[:MOST_NAMED])
+    more = f" and {len(others) - MOST_NAMED} more" if len(others) > MOST_NAMED else ""
+    return f"{first}: {basis}. It may as well be {named}{more}."
+
+
+def possible_winners(ranked: pl.DataFrame) -> list[str]:
+    """The fewest combinations that together are the best with a probability of 90 %."""
+    likely = ranked.sort("probability", "score", descending=True)
+    reached = likely["probability"].cum_sum().to_list()
+    number = sum(total < TOGETHER for total in reached) + 1
+    kept = likely.head(number)
+    return list(kept.filter(kept["probability"] > 0)["combination"])
+
+
+def _why(found: Recommendation, best: dict[str, Any]) -> list[str]:
+    ranked = found.ranked
+    others = len(ranked)
+
+    def median(name: str) -> float:
+        value = ranked[name].median()
+        return float(value) if isinstance(value, int | float) else float("nan")
+
+    beyond = "precision_beyond_chance" if best["excess_inliers"] is not None else "precision"
+    inliers = "excess_inliers" if best["excess_inliers"] is not None else "inliers"
+    what = " beyond chance" if inliers == "excess_inliers" else ""
+    return [
+        f"{best[inliers]:,.0f} inliers{what} a pair; the median of the {others} combinations that "
+        f"succeeded is {median(inliers):,.0f}",
+        f"inlier ratio{what} {best[beyond]:.3f} ({median(beyond):.3f})",
+        f"{best['succeeded']} of {count(best['pairs'], 'pair')} succeeded",
+    ]
+
+
+def _costs(found: Recommendation, best: dict[str, Any]) -> list[str]:
+    image = best["detect_seconds"] + best["describe_seconds"]
+    return [
+        f"an image {image:.2f} s (detect {best['detect_seconds']:.2f}, describe "
+        f"{best['describe_seconds']:.2f}), each pair {best['match_seconds']:.2f} s to match and "
+        f"{best['verify_seconds']:.3f} s to verify, on one core of {found.machine}",
+    ]
+
+
+def _faster(found: Recommendation, best: dict[str, Any]) -> list[str]:
+    """The fastest of those that are nearly as good, where it is much faster."""
+    good = found.ranked.filter(found.ranked["score"] >= GOOD * best["score"])
+    fastest = good.sort("total_seconds", "combination").row(0, named=True)
+    if fastest["total_seconds"] * FASTER > best["total_seconds"]:
+        return []
+    share = fastest["score"] / best["score"]
+    times = best["total_seconds"] / fastest["total_seconds"]
+    return [
+        f"{fastest['combination']} has {share:.0%} of its score and takes "
+        f"{fastest['total_seconds']:.2f} s in place of {best['total_seconds']:.2f} s: {times:.0f} "
+        "times faster"
+    ]
+
+
+def _notes(found: Recommendation) -> list[str]:
+    notes = []
+    if found.seen.others:
+        notes.append(
+            f"{count(len(found.seen.others), 'pair')} left out: no model better than chance was "
+            "found there, the images may not overlap"
+        )
+    stood = len(found.seen.overlapping) + len(found.seen.others)
+    if stood < found.candidates:
+        notes.append(f"{stood} pairs, spread evenly, stand for all {found.candidates}")
+    if len(found.seen.overlapping) < 5:
+        notes.append("fewer than 5 pairs tell little of others; give more images that overlap")
+    return notes
+
+
+def ranking(found: Recommendation, top: int) -> Table:
+    """The best by expected score."""
+    headings = ("score", "best with", "pairs ok", "inlier ratio*", "inliers*", "seconds a pair")
+    table = plain_table("rank", "combination", *headings, numbers=len(headings))
+    chance_tested = found.ranked["excess_inliers"].is_not_null().any()
+    ratio, inliers = (
+        ("precision_beyond_chance", "excess_inliers") if chance_tested else ("precision", "inliers")
+    )
+    for rank, row in enumerate(found.ranked.head(top).iter_rows(named=True), start=1):
+        table.add_row(
+            f"{rank}",
+            row["combination"],
+            f"{row['score']:.3f}",
+            f"{row['probability']:.0%}",
+            f"{row['succeeded']}/{row['pairs']}",
+            f"{row[ratio]:.3f}",
+            f"{row[inliers]:,.0f}",
+            f"{row['total_seconds']:.2f}",
+        )
+    return table
+
+
+def story(outcome: RaceOutcome) -> Table:
+    """The race, a line a round."""
+    headings = ("seconds", "measured", "in the race", "chance")
+    table = plain_table("leader", *headings, numbers=len(headings))
+    for each in outcome.rounds:
+        table.add_row(
+            each.leader,
+            f"{each.spent:.0f}",
+            f"{each.measured:,}",
+            f"{each.contenders}",
+            f"{each.probability:.0%}",
+        )
+    return table

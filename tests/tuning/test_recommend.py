@@ -1,0 +1,170 @@
+"""From a folder of images to an answer: races, what cannot be raced, going on."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from aerocues.datasets.dataset import Pair
+from aerocues.tuning.representative import spread_pairs
+from tests.cli.conftest import Answer, Call
+from tests.cli.other_machine import slower_copy
+from tests.cli.test_interruption import PROGRAM
+
+SOME = "ORB-*-HAM-BF,AKAZE-AKAZE-*,GFTT-BRIEF-*,STAR-SIFT-*,!*-BOOST-*"
+SHORT = ("--budget", "60s", "--workers", 1)
+
+
+def race(call: Call, photos: Path, output: Path, *more: object) -> Answer:
+    return call("recommend", photos, "-o", output, "--combinations", SOME, *SHORT, *more)
+
+
+def test_the_answer_says_what_how_sure_why_and_what_next(
+    call: Call, photos: Path, tmp_path: Path
+) -> None:
+    output, page = tmp_path / "race", tmp_path / "page.html"
+    answer = race(call, photos, output, "--explain", "--report", page)
+    assert answer.code == 0, answer.err
+    best = re.search(r"^Take (\S+)\.$", answer.out, re.MULTILINE)
+    assert best is not None
+    assert re.search(r"^ *1 +" + re.escape(best[1]), answer.out, re.MULTILINE)
+    assert re.search(r"best of 14 for quality and speed in balance.* on 3 pairs", answer.out, re.S)
+    assert re.search(r"^why +[\d,]+ inliers beyond chance a pair", answer.out, re.MULTILINE)
+    assert re.search(r"^costs +an image 0\.\d\d s \(detect", answer.out, re.MULTILINE)
+    assert re.search(r"^leader +seconds +measured +in the race +chance$", answer.out, re.MULTILINE)
+    command = f"aerocues reconstruct {photos} -o models --combinations {best[1]}"
+    assert command in answer.out
+    assert "fewer than 5 pairs" in answer.out
+    assert "looking which of 3 pairs show the same things" in answer.err
+    assert page.stat().st_size > 100_000
+
+    # The same race once more: nothing is measured, and the answer is the same.
+    parts = sorted((output / "parts").iterdir())
+    again = race(call, photos, output, "--explain")
+    assert sorted((output / "parts").iterdir()) == parts
+    assert again.out == answer.out.replace(f"report   {page}\n", "")
+
+
+def test_objectives_and_devices_count(call: Call, photos: Path, tmp_path: Path) -> None:
+    output = tmp_path / "race"
+    for objective in ("speed", "accuracy", "reconstruction", "robust"):
+        answer = race(call, photos, output, "--objective", objective, "--explain")
+        assert answer.code == 0, answer.err
+        assert answer.out.startswith(f"{objective}: ")
+    board = slower_copy(output, tmp_path / "board")
+    factors = tmp_path / "factors.json"
+    compared = call("compare", output, board, "--factors", factors)
+    assert compared.code == 0, compared.err
+    there = race(call, photos, output, "--objective", "speed", "--device", factors)
+    assert "on one core of slow board" in there.out
+    third = slower_copy(board, tmp_path / "slower")
+    refused = call("compare", output, board, third, "--factors", factors)
+    assert refused.code == 2
+    assert "--factors needs two results of the same data set" in refused.err
+
+
+def picture(path: Path, seed: int | None) -> None:
+    pixels = np.full((180, 240, 3), 90, np.uint8)
+    if seed is not None:
+        random = np.random.default_rng(seed)
+        for _ in range(150):
+            y, x = random.integers(0, (170, 230))
+            pixels[y : y + 12, x : x + 14] = random.integers(0, 256, 3)
+    path.parent.mkdir(exist_ok=True)
+    Image.fromarray(pixels).save(path)
+
+
+@pytest.mark.parametrize(
+    ("seeds", "words"),
+    [
+        ([3], "two"),
+        ([None, None, None], "the images are blank: neither SIFT nor GFTT_H nor AKAZE finds"),
+        ([1, 2, 3], "no two images of the 2 pairs that were tried show the same things"),
+    ],
+)
+def test_images_that_allow_no_answer_get_none(
+    call: Call, tmp_path: Path, seeds: list[int | None], words: str
+) -> None:
+    for number, seed in enumerate(seeds):
+        picture(tmp_path / "images" / f"{number}.png", seed)
+    answer = race(call, tmp_path / "images", tmp_path / "race")
+    assert answer.code == 2
+    assert answer.out == ""
+    assert words in answer.err
+    assert answer.err.count("error: ") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--budget", "soon"), "--budget soon is no time; give it such as 90s, 5min or 1h"),
+        (("--budget", "0s"), "--budget 0s is no time"),
+        (("--combinations", "ORB-ORB-HAM-BF"), "a race needs two combinations"),
+        (("--objective", "best"), "--objective"),
+        (("--sure", "0.1"), "--sure"),
+        (("--device", "missing.json"), "cannot read the factors"),
+    ],
+)
+def test_mistakes_are_told(
+    call: Call, photos: Path, tmp_path: Path, words: tuple[str, ...], told: str
+) -> None:
+    answer = call("recommend", photos, "-o", tmp_path / "r", *words)
+    assert answer.code == 2
+    assert told in answer.err
+
+
+def test_pairs_are_spread_over_sequences_by_their_share() -> None:
+    pairs = [Pair(i, f"{i}a", f"{i}b", "long" if i < 40 else "short") for i in range(50)]
+    chosen = spread_pairs(pairs, 10)
+    assert [pair.sequence for pair in chosen] == ["long"] * 8 + ["short"] * 2
+    gaps = np.diff([pair.index for pair in chosen[:8]])
+    assert gaps.min() >= 4
+    assert spread_pairs(pairs, 50) == pairs
+    assert len({pair.sequence for pair in spread_pairs(pairs, 2)}) == 2
+
+
+def steps_of(journal: Path) -> list[tuple[float, list[str]]]:
+    [race] = json.loads(journal.read_text()).values()
+    steps: list[tuple[float, list[str]]] = race["steps"]
+    return steps
+
+
+@pytest.mark.slow
+def test_an_interrupted_race_goes_on_as_it_began(photos: Path, tmp_path: Path) -> None:
+    output = tmp_path / "race"
+    words = ["recommend", str(photos), "-o", str(output), "--budget", "40s", "--workers", "1"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, *words], stderr=subprocess.PIPE, text=True
+    )
+    journal = output / "race.json"
+    while not journal.exists() or len(steps_of(journal)) < 3:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert err.endswith("interrupted; run the same command again to go on\n")
+    begun = steps_of(journal)
+
+    def again() -> str:
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM, *words], capture_output=True, text=True, check=True
+        )
+        return done.stdout
+
+    answer = again()
+    finished = steps_of(journal)
+    assert finished[: len(begun)] == begun
+    assert len(finished) > len(begun)
+    # What the first part took counts, and the budget is kept.
+    assert begun[-1][0] < finished[-1][0] < 48
+    assert answer == again()
