@@ -23,6 +23,7 @@ from aerocues.cli import (
     score,
     simulate,
     status,
+    tune,
     validate,
 )
 from aerocues.errors import AerocuesError
@@ -51,6 +52,7 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
+app.command("tune")(tune.tune)
 app.command("simulate")(simulate.simulate)
 app.add_typer(airsim.app, name="airsim")
 app.add_typer(methods.app, name="methods")

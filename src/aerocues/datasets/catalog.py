@@ -85,6 +85,11 @@ def open_dataset(
     return replace(_restricted(dataset, limit, sequences), source=source)
 
 
+def takes_pairs(spec: str) -> bool:
+    """Whether the kind of dataset that a text form names leaves open how images are paired."""
+    return _parse(spec)[0].takes_pairs
+
+
 def _absolute(kind: DatasetKind, target: Path | None) -> str:
     """The text form of a dataset that means the same in any folder."""
     if target is None:

@@ -30,6 +30,8 @@ class Valuation:
     blocks : (P,) int64
     settings : ScoreSettings
     objective : Objective
+    weights : (C,) float64, optional
+        In place of those that the expected values give.
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class Valuation:
         blocks: NDArray[np.int64],
         settings: ScoreSettings,
         objective: Objective,
+        weights: Array | None = None,
     ) -> None:
         self._objective = objective
         self._alpha = settings.alpha
@@ -49,10 +52,12 @@ class Valuation:
         high = expected.max(axis=(0, 1))
         self._width = np.where(high > self._low, high - self._low, 1.0)
         self._member = _membership(blocks)
-        matrix = self._normalised(expected.mean(axis=1))
-        by_method = weights_by_method(matrix[None], settings.weights)
-        estimated = aggregate(by_method, settings.aggregation)[0]
-        self.weights = objective.weights(estimated, criteria)
+        if weights is None:
+            matrix = self._normalised(expected.mean(axis=1))
+            by_method = weights_by_method(matrix[None], settings.weights)
+            estimated = aggregate(by_method, settings.aggregation)[0]
+            weights = objective.weights(estimated, criteria)
+        self.weights = weights
 
     def _normalised(self, values: Array) -> Array:
         share = (values - self._low) / self._width

@@ -1,0 +1,203 @@
+"""`aerocues tune`: parameters that suit a method, as a preset."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from aerocues.tuning.search import Finding
+    from aerocues.tuning.subjects import Subject
+    from aerocues.tuning.tune import Tuned
+
+
+def tune(
+    methods: Annotated[
+        str,
+        typer.Argument(
+            metavar="METHODS",
+            help="Such as LATCH, detector:ORB, a combination, several with commas, or 'all'.",
+        ),
+    ],
+    datasets: Annotated[
+        list[str], typer.Argument(metavar="DATASET...", help="Folders or kinds of data sets.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The preset: a JSON file.")
+    ],
+    validate: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="DATASET", help="Judge on this one; by default on scenes kept for that."
+        ),
+    ] = None,
+    grid: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help='Values to try: {"threshold": [5, 10, 20]} in JSON.'),
+    ] = None,
+    objective: Annotated[
+        str, typer.Option(metavar="CRITERION", help="cues, or a criterion such as excess_inliers.")
+    ] = "cues",
+    budget: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Such as 30min; none by default.")
+    ] = None,
+    max_keypoints: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
+    ] = 0,
+    pairs: Annotated[
+        str | None, typer.Option(help="How images are paired, where the data set leaves that open.")
+    ] = None,
+    max_pairs: Annotated[
+        int,
+        typer.Option(min=2, metavar="N", help="Pairs to choose by, and as many to judge by."),
+    ] = 16,
+    max_width: Annotated[
+        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+    ] = None,
+    results: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder of the measurements; FILE-search by default."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
+    ] = 0,
+) -> None:
+    """Search parameters on some scenes and keep those that pay on others.
+
+    Stop at any moment and run the same command again: it goes on.
+    """
+    from aerocues.cli.durations import parse_duration
+    from aerocues.cli.interruption import Interrupted, interruptible
+    from aerocues.datasets.catalog import open_dataset
+    from aerocues.evaluation.run import Limits
+    from aerocues.methods.strongest import KeypointLimit
+    from aerocues.tuning.grids import read_grid
+    from aerocues.tuning.tune import TuneOptions
+    from aerocues.tuning.tune import tune as search
+
+    with interruptible():
+        opened, others = (
+            [_opened(open_dataset, spec, pairs, max_width) for spec in specs or ()]
+            for specs in (datasets, validate)
+        )
+        options = TuneOptions(
+            objective=objective,
+            pairs=max_pairs,
+            seed=seed,
+            budget=parse_duration(budget, "--budget") if budget else float("inf"),
+            limit=KeypointLimit(max_keypoints),
+        )
+        try:
+            tuned = search(
+                [name for name in methods.split(",") if name.strip()],
+                opened,
+                output,
+                validation=others,
+                grid=read_grid(grid) if grid else None,
+                options=options,
+                results=results,
+                limits=Limits(workers=workers),
+                listener=_listener(),
+            )
+        except Interrupted as interruption:
+            sys.stderr.write("interrupted; run the same command again to go on\n")
+            raise typer.Exit(interruption.exit_code) from None
+    _print(tuned, output, datasets)
+
+
+def _opened(open_dataset: Any, spec: str, pairs: str | None, max_width: int | None) -> Any:
+    """A data set; `pairs` is for those that leave them open."""
+    from aerocues.datasets.catalog import takes_pairs
+
+    return open_dataset(spec, pairs=pairs if takes_pairs(spec) else None, max_width=max_width)
+
+
+def _listener() -> Any:
+    from aerocues.tuning.tune import Listener
+
+    class Lines(Listener):
+        """A line a search."""
+
+        def begins(self, subject: Subject, number: int, total: int) -> None:
+            self._place = f"{number} of {total}"
+
+        def found(self, finding: Finding) -> None:
+            what = f"{setting_text(finding.best)}: {_gain(finding)}" if finding.best else "default"
+            told = f"; {finding.why_not}" if finding.why_not else ""
+            sys.stderr.write(f"{self._place}: {finding.subject.name}: {what}{told}\n")
+            sys.stderr.flush()
+
+    return Lines()
+
+
+def setting_text(setting: Any) -> str:
+    """``bytes=32, use_orientation=False``."""
+    return ", ".join(f"{name}={value}" for name, value in setting.items()) or "default"
+
+
+def _gain(finding: Finding) -> str:
+    return f"{finding.gain:+.3f} ({finding.low:+.3f} to {finding.high:+.3f})"
+
+
+def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
+    from aerocues.cli.console import count, print_table, standard_output
+
+    console = standard_output()
+    training = sum(len(split.training) for split in tuned.splits)
+    validation = sum(len(split.validation) for split in tuned.splits)
+    ways = ", ".join(dict.fromkeys(split.by for split in tuned.splits))
+    console.print(
+        f"{count(len(tuned.findings), 'setting')}: chosen by {training} pairs, judged "
+        f"by {validation} others, divided by {ways}",
+        markup=False,
+        soft_wrap=True,
+    )
+    print_table(console, table(tuned.findings))
+    console.print(
+        "gain: of the score on the pairs to judge by; at least: with 97.5 % certainty; figures: means"
+    )
+    for line in (
+        f"\npreset   {output}",
+        f"search   {tuned.folder}",
+        f"next     aerocues run {shlex.quote(datasets[0])} -o results --preset "
+        f"{shlex.quote(str(output))}",
+    ):
+        console.print(line, soft_wrap=True, markup=False)
+
+
+def table(findings: list[Finding]) -> Table:
+    """A row a search."""
+    from aerocues.cli.console import plain_table
+
+    headings = ("gain", "at least", "inlier ratio", "inliers", "true precision")
+    output = plain_table("searched", "best", "kept", *headings, numbers=len(headings))
+    output.columns[0].no_wrap = True
+    for finding in findings:
+        default, tuned = finding.default, finding.tuned
+        figures = ["-"] * len(headings)
+        if default is not None and tuned is not None:
+            figures = [
+                f"{finding.gain:+.3f}",
+                f"{finding.low:+.3f}",
+                _change(default.inlier_ratio, tuned.inlier_ratio, ".2f"),
+                _change(default.inliers, tuned.inliers, ",.0f"),
+                _change(default.true_precision, tuned.true_precision, ".2f"),
+            ]
+        kept = "yes" if finding.pays else "no"
+        output.add_row(finding.subject.name, setting_text(finding.best), kept, *figures)
+    return output
+
+
+def _change(before: float | None, after: float | None, form: str) -> str:
+    if before is None or after is None:
+        return "-"
+    return f"{before:{form}} > {after:{form}}"

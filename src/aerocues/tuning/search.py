@@ -1,0 +1,224 @@
+"""Searches the settings of one subject on training pairs, and judges the best on others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.metrics import Row
+from aerocues.tuning.bench import Bench
+from aerocues.tuning.grids import Setting
+from aerocues.tuning.image_arena import criterion_values, rows_frame
+from aerocues.tuning.scales import Array
+from aerocues.tuning.splits import Split
+from aerocues.tuning.subjects import Subject
+from aerocues.tuning.yardstick import Yardstick, mean_difference, of_threshold
+
+# Larger grids are halved: all candidates on a part of the pairs, the better ones on the rest.
+LARGE_GRID = 9
+FIRST_PART = 0.34
+KEPT = 0.34
+FEWEST_PAIRS, FEWEST_KEPT = 3, 4
+LEAST_GAIN = 0.005
+"""In score: less is not worth a departure from the default."""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What a candidate reaches on pairs: means, in which a failed pair counts as 0."""
+
+    success: float
+    inlier_ratio: float
+    inliers: float
+    true_precision: float | None
+    seconds: float | None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """How a search ended.
+
+    Parameters
+    ----------
+    subject : Subject
+    tried : int
+        Candidates, the default among them.
+    best : mapping
+        The setting that is best on the training pairs; empty: the default.
+    gain, low, high : float
+        Of its score over the default's on validation pairs, with a 95 % interval; 0 for the
+        default.
+    default, tuned : Figures or None
+        On validation pairs.
+    pays : bool
+        Whether it is to be used.
+    why_not : str
+        Why it does not pay.
+    """
+
+    subject: Subject
+    tried: int
+    best: Setting
+    gain: float
+    low: float
+    high: float
+    default: Figures | None
+    tuned: Figures | None
+    pays: bool
+    why_not: str = ""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A data set that is searched on."""
+
+    bench: Bench
+    engine: Engine
+    split: Split
+
+
+class Search:
+    """Searches subjects one after the other.
+
+    Parameters
+    ----------
+    fields : sequence of Field
+    yardstick : Yardstick
+    seed : int
+    deadline : float
+        By `time.monotonic`; what is not finished then stays at its default.
+    watch : callable
+        Told what the workers are doing.
+    """
+
+    def __init__(
+        self,
+        fields: Sequence[Field],
+        yardstick: Yardstick,
+        seed: int,
+        deadline: float = float("inf"),
+        watch: Callable[[Sequence[Activity]], None] = lambda _: None,
+    ) -> None:
+        self._fields, self._yardstick, self._seed = fields, yardstick, seed
+        self._deadline, self._watch = deadline, watch
+
+    def run(self, subject: Subject) -> Finding:
+        """Search one subject."""
+        yardstick = of_threshold() if subject.kind == "threshold" else self._yardstick
+        training = self._pairs("training")
+        if subject.kind == "threshold":
+            training = [each for each in training if self._has_truth(each)]
+            if not training:
+                return _kept(subject, 0, "no ground truth to judge thresholds by")
+        candidates = list(range(len(subject.settings)))
+        if len(candidates) > LARGE_GRID:
+            part = training[: max(round(FIRST_PART * len(training)), FEWEST_PAIRS)]
+            scores = yardstick.scores(self._values(subject, candidates, part, yardstick))
+            count = max(round(KEPT * len(candidates)), FEWEST_KEPT)
+            kept = [int(each) for each in np.argsort(-scores, kind="stable")[:count]]
+            candidates = sorted({0, *kept})
+        values = self._values(subject, candidates, training, yardstick)
+        if time.monotonic() >= self._deadline:
+            return _kept(subject, len(subject.settings), "time was up")
+        if np.isnan(values).all():
+            return _kept(subject, len(subject.settings), "everything failed")
+        best = candidates[int(np.argmax(yardstick.scores(values)))]
+        if not best:
+            return _kept(subject, len(subject.settings), "the default is the best")
+        return self._judged(subject, best, values, yardstick)
+
+    def _judged(
+        self, subject: Subject, best: int, training: Array, yardstick: Yardstick
+    ) -> Finding:
+        pairs = self._pairs("validation")
+        if subject.kind == "threshold":
+            pairs = [each for each in pairs if self._has_truth(each)]
+        values = self._values(subject, [0, best], pairs, yardstick)
+        setting, tried = subject.settings[best], len(subject.settings)
+        if time.monotonic() >= self._deadline or not pairs:
+            return _kept(subject, tried, "time was up")
+        first, second = yardstick.on_others(training, values)
+        gain, low, high = mean_difference(first, second, self._seed)
+        default, tuned = (self._figures(subject, each, pairs) for each in (0, best))
+        pays = low > 0 and gain >= LEAST_GAIN
+        why_not = "" if pays else "the gain is not sure on validation pairs"
+        return Finding(subject, tried, setting, gain, low, high, default, tuned, pays, why_not)
+
+    def _pairs(self, side: str) -> list[tuple[int, int]]:
+        """Field and number of each pair, the data sets and scenes mixed."""
+        pairs = [
+            (number, pair)
+            for number, field in enumerate(self._fields)
+            for pair in getattr(field.split, side)
+        ]
+        order = np.random.default_rng(self._seed).permutation(len(pairs))
+        return [pairs[place] for place in order]
+
+    def _has_truth(self, pair: tuple[int, int]) -> bool:
+        dataset = self._fields[pair[0]].bench.context.dataset
+        images = dataset.pair(pair[1])
+        return images.homography is not None or dataset.true_views(images) is not None
+
+    def _rows(
+        self, subject: Subject, candidates: Sequence[int], pairs: Sequence[tuple[int, int]]
+    ) -> list[Row | None]:
+        """Rows of each candidate on each pair, candidate after candidate."""
+        named = [subject.variant(candidate) for candidate in candidates]
+        for number, field in enumerate(self._fields):
+            asked = [
+                (pair, each)
+                for place, pair in pairs
+                if place == number
+                for each in named
+                if field.bench.possible((pair, each))
+            ]
+            field.bench.measure(asked, field.engine, deadline=self._deadline, watch=self._watch)
+        return [
+            self._fields[place].bench.row((pair, each)) for each in named for place, pair in pairs
+        ]
+
+    def _values(
+        self,
+        subject: Subject,
+        candidates: Sequence[int],
+        pairs: Sequence[tuple[int, int]],
+        yardstick: Yardstick,
+    ) -> Array:
+        """(A, P, C) values; NaN where a candidate failed or was not measured."""
+        rows = self._rows(subject, candidates, pairs)
+        values = np.full((len(rows), len(yardstick.criteria)), np.nan)
+        known = [place for place, row in enumerate(rows) if row is not None]
+        if known:
+            values[known] = criterion_values(
+                [row for row in rows if row is not None], yardstick.criteria
+            )
+        return values.reshape(len(candidates), len(pairs), -1)
+
+    def _figures(
+        self, subject: Subject, candidate: int, pairs: Sequence[tuple[int, int]]
+    ) -> Figures:
+        import polars as pl
+
+        rows = [row for row in self._rows(subject, [candidate], pairs) if row is not None]
+        table = rows_frame(rows)
+        ok = pl.col("status") == "ok"
+
+        def mean(name: str) -> pl.Expr:
+            return pl.when(ok).then(pl.col(name)).otherwise(0.0).mean().alias(name)
+
+        row = table.select(
+            ok.mean().alias("success"),
+            mean("precision_beyond_chance"),
+            mean("excess_inliers"),
+            pl.col("gt_precision@3").mean(),
+            pl.col("total_seconds").median(),
+        ).row(0)
+        return Figures(*row)
+
+
+def _kept(subject: Subject, tried: int, why_not: str) -> Finding:
+    return Finding(subject, tried, {}, 0.0, 0.0, 0.0, None, None, pays=False, why_not=why_not)

@@ -1,0 +1,246 @@
+"""Parameters that suit each method: searched on some scenes, judged on others, kept if they pay."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import SelectionError
+from aerocues.evaluation.context import make_context
+from aerocues.evaluation.engine import Activity
+from aerocues.evaluation.run import Limits, local_engine
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.unit import Context
+from aerocues.evaluation.versions import machine_name, software_versions
+from aerocues.methods.parameters import Value
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.preset_files import write_preset
+from aerocues.methods.presets import Preset, preset_named
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.tuning.bench import Bench
+from aerocues.tuning.search import Field, Finding, Search
+from aerocues.tuning.splits import Split, given_split, split_pairs
+from aerocues.tuning.subjects import Subject, subjects_of
+from aerocues.tuning.yardstick import CUES, yardstick
+
+PAIRS = 16
+
+
+class Listener:
+    """Told how a search goes on; the base says nothing."""
+
+    def hashing(self, done: int, total: int) -> None:
+        """`done` of `total` images have been read."""
+
+    def begins(self, subject: Subject, number: int, total: int) -> None:
+        """A search begins."""
+
+    def found(self, finding: Finding) -> None:
+        """A search is over."""
+
+    def working(self, activities: Sequence[Activity]) -> None:
+        """What the workers are doing, several times a second."""
+
+
+@dataclass(frozen=True)
+class TuneOptions:
+    """How parameters are searched.
+
+    Parameters
+    ----------
+    objective : str
+        ``cues`` or the name of a criterion.
+    pairs : int
+        Pairs to choose by, and as many to judge by, of all data sets together.
+    seed : int
+    budget : float
+        Wall seconds; what is not finished then stays at its default.
+    limit : KeypointLimit
+        How many keypoints of an image are kept: what is equal for all candidates.
+    """
+
+    objective: str = CUES
+    pairs: int = PAIRS
+    seed: int = 0
+    budget: float = float("inf")
+    limit: KeypointLimit = ALL_KEYPOINTS
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """The preset that was written, and what each search found."""
+
+    preset: Preset
+    findings: list[Finding]
+    splits: list[Split]
+    folder: Path
+
+
+def tune(
+    names: Sequence[str],
+    datasets: Sequence[Dataset],
+    output: str | Path,
+    *,
+    validation: Sequence[Dataset] = (),
+    grid: Mapping[str, tuple[Value, ...]] | None = None,
+    options: TuneOptions | None = None,
+    results: str | Path | None = None,
+    limits: Limits | None = None,
+    listener: Listener | None = None,
+) -> Tuned:
+    """Search parameters and write those that pay as a preset.
+
+    Each subject is searched with everything else at its default: all settings of its grid on
+    training pairs (of a large grid, the better third after a third of the pairs), then the best
+    against the default on validation pairs of other scenes. It is kept if the 95 % interval of its
+    gain lies above 0.
+
+    Parameters
+    ----------
+    names : sequence of str
+        See `subjects.subjects_of`.
+    datasets : sequence of Dataset
+    output : path
+        File of the preset.
+    validation : sequence of Dataset
+        To judge by; where there are none, some scenes of `datasets` are kept for that.
+    grid : mapping, optional
+        Values of parameters to try, in place of the default ones; for one method.
+    options : TuneOptions, optional
+    results : path, optional
+        Folder of the measurements, made or continued; beside `output` by default.
+    limits : Limits, optional
+        Workers, time and memory.
+    listener : Listener, optional
+        Told how it goes on.
+
+    Raises
+    ------
+    AerocuesError
+        If a name or an option makes no sense, or the images do not allow a split.
+    """
+    began = time.monotonic()
+    options, listener = options or TuneOptions(), listener or Listener()
+    methods = installed_methods()
+    subjects = [each for name in names for each in subjects_of(name, methods, grid)]
+    every = [*datasets, *validation]
+    if len({each.name for each in every}) < len(every):
+        raise SelectionError("two data sets have the same name; give each once")
+    splits = (
+        given_split(datasets, validation, options.pairs)
+        if validation
+        else split_pairs(datasets, options.seed, options.pairs)
+    )
+    file = Path(output)
+    base = preset_named("default")
+    folder = Path(results) if results else file.with_name(f"{file.stem}-search")
+    store = Store.create(folder)
+    with store.writing(), contextlib.ExitStack() as engines:
+        fields = []
+        for dataset, split in zip(every, splits, strict=True):
+            context = _context(_part(dataset, split), base, subjects, options)
+            asked = dict.fromkeys(
+                subject.variant(number)
+                for subject in subjects
+                for number in range(len(subject.settings))
+            )
+            bench = Bench(context, list(asked), store, base, listener.hashing)
+            engine = local_engine(limits or Limits(), "estimated")
+            fields.append(Field(bench, engines.enter_context(engine.standing(context)), split))
+        search = Search(
+            fields,
+            yardstick(options.objective),
+            options.seed,
+            began + options.budget,
+            listener.working,
+        )
+        findings = []
+        for number, subject in enumerate(subjects, start=1):
+            listener.begins(subject, number, len(subjects))
+            findings.append(search.run(subject))
+            listener.found(findings[-1])
+    preset = Preset(file.stem, "parameters found by aerocues tune", chance_test=True)
+    for finding in findings:
+        if finding.pays:
+            preset = finding.subject.applied(preset, finding.best, methods)
+    preset.check(methods.detectors, methods.descriptors)
+    write_preset(file, preset, _made(every, splits, options, findings))
+    return Tuned(preset, findings, splits, folder)
+
+
+def _part(dataset: Dataset, split: Split) -> Dataset:
+    chosen = {*split.training, *split.validation}
+    pairs = [pair for pair in dataset.pairs if pair.index in chosen]
+    used = {name for pair in pairs for name in (pair.image_1, pair.image_2)}
+    images = [image for image in dataset.images if image.name in used]
+    return replace(dataset, pairs=pairs, images=images)
+
+
+def _context(
+    dataset: Dataset, base: Preset, subjects: Sequence[Subject], options: TuneOptions
+) -> Context:
+    """What the workers need, with every candidate as a method of its own."""
+    context = make_context(
+        dataset, base, seed=options.seed, timing="estimated", limit=options.limit
+    )
+    methods = installed_methods()
+    thresholds: dict[str, float] = {}
+    for subject in subjects:
+        methods = subject.added(methods)
+        thresholds.update(subject.thresholds())
+    return replace(
+        context,
+        methods=options.limit.limited(methods),
+        protocol=replace(context.protocol, thresholds=thresholds),
+    )
+
+
+def _made(
+    datasets: Sequence[Dataset],
+    splits: Sequence[Split],
+    options: TuneOptions,
+    findings: Sequence[Finding],
+) -> dict[str, Any]:
+    """The record of a search, for its preset."""
+    return {
+        "versions": software_versions(),
+        "machine": machine_name(),
+        "objective": options.objective,
+        "seed": options.seed,
+        "max_keypoints": options.limit.count,
+        "datasets": [
+            {
+                "name": dataset.name,
+                "settings": dict(dataset.settings),
+                "split_by": split.by,
+                "training": [_told(dataset, number) for number in split.training],
+                "validation": [_told(dataset, number) for number in split.validation],
+            }
+            for dataset, split in zip(datasets, splits, strict=True)
+        ],
+        "searches": [
+            {
+                "subject": finding.subject.name,
+                "judged_in": str(finding.subject.combination),
+                "tried": finding.tried,
+                "best": dict(finding.best),
+                "gain": finding.gain,
+                "interval": [finding.low, finding.high],
+                "default": asdict(finding.default) if finding.default else None,
+                "tuned": asdict(finding.tuned) if finding.tuned else None,
+                "kept": finding.pays,
+                "why_not": finding.why_not,
+            }
+            for finding in findings
+        ],
+    }
+
+
+def _told(dataset: Dataset, number: int) -> str:
+    pair = dataset.pair(number)
+    return f"{pair.sequence}: {pair.image_1} {pair.image_2}"
