@@ -163,7 +163,7 @@ def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
     )
     print_table(console, table(tuned.findings))
     console.print(
-        "gain: of the score on the pairs to judge by; at least: with 97.5 % certainty; figures: means"
+        "gain: of the score on the pairs to judge by; at least: its 2.5 % quantile; figures: means"
     )
     for line in (
         f"\npreset   {output}",
