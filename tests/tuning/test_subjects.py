@@ -1,0 +1,114 @@
+"""What is searched, under which names it is measured, and what becomes of the preset."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.compatibility import why_incompatible
+from aerocues.methods.making import make_descriptor, make_detector
+from aerocues.methods.presets import Preset
+from aerocues.methods.registry import opencv_methods
+from aerocues.tuning.grids import GRIDS, read_grid, settings_of
+from aerocues.tuning.subjects import Subject, subjects_of
+
+METHODS = opencv_methods()
+EMPTY = Preset("p", "", chance_test=True)
+
+
+def test_settings_hold_what_differs_and_begin_with_the_default() -> None:
+    values = {"a": (1, 2), "b": (True, False)}
+    found = settings_of(values, {"a": 2, "b": True, "c": 0})
+    assert found == [{}, {"a": 1}, {"a": 1, "b": False}, {"b": False}]
+
+
+def test_there_is_a_grid_for_every_method_whose_parameters_matter_alone() -> None:
+    detectors = {row.method for row in GRIDS if row.kind == "detector"}
+    descriptors = {row.method for row in GRIDS if row.kind == "descriptor"}
+    assert detectors == set(METHODS.detectors)
+    # What the parameters of these two decide as descriptors is decided with the detector.
+    assert descriptors == set(METHODS.descriptors) - {"SIFT", "ORB"}
+
+
+@pytest.mark.parametrize("subject", subjects_of("all", METHODS), ids=lambda each: each.name)
+def test_every_candidate_can_be_made(subject: Subject) -> None:
+    assert why_incompatible(subject.combination, METHODS) is None
+    assert len(subject.settings) > 1
+    added = subject.added(METHODS)
+    names = [subject.variant(number) for number in range(len(subject.settings))]
+    assert len(set(names)) == len(names)
+    for named in names:
+        assert Combination.parse(str(named)) == named
+        make_detector(added, named.detector)
+        make_descriptor(added, named.descriptor, named.detector)
+
+
+def test_a_detector_takes_along_what_its_own_descriptor_shares() -> None:
+    [subject] = subjects_of("detector:orb", METHODS)
+    setting = {"nlevels": 8}
+    number = subject.settings.index(setting)
+    named = subject.variant(number)
+    added = subject.added(METHODS)
+    assert added.detectors[named.detector].parameters["nlevels"] == 8
+    assert added.descriptors[named.descriptor].parameters["nlevels"] == 8
+    assert added.detectors["ORB"].parameters["nlevels"] == 6
+    preset = subject.applied(EMPTY, setting, METHODS)
+    assert preset.detectors == {"ORB": setting}
+    assert preset.on_detectors == {"ORB-ORB": setting}
+    assert preset.descriptors == {}
+
+
+def test_a_descriptor_is_searched_by_itself_and_on_each_detector() -> None:
+    first, *others = subjects_of("beblid", METHODS)
+    assert (first.kind, first.name) == ("descriptor", "descriptor BEBLID")
+    assert [each.combination.detector for each in others] == list(METHODS.detectors)
+    assert others[2].name == "BEBLID on ORB"
+    preset = first.applied(EMPTY, {"n_bits": 101}, METHODS)
+    preset = others[2].applied(preset, {"scale_factor": 1.0}, METHODS)
+    assert preset.descriptors == {"BEBLID": {"n_bits": 101}}
+    assert preset.on_detectors == {"ORB-BEBLID": {"scale_factor": 1.0}}
+
+
+def test_a_combination_is_searched_part_by_part() -> None:
+    detector, pair, threshold = subjects_of("ORB-BEBLID-HAM-BF", METHODS)
+    assert [each.kind for each in (detector, pair, threshold)] == ["detector", "pair", "threshold"]
+    assert detector.applied(EMPTY, {"nlevels": 8}, METHODS).on_detectors == {}
+    number = threshold.settings.index({"threshold": 1.5})
+    named = threshold.variant(number)
+    assert threshold.thresholds()[f"{named.detector}-{named.descriptor}"] == 1.5
+    rows = threshold.added(METHODS).descriptors
+    assert rows[named.descriptor].parameters == METHODS.descriptors["BEBLID"].parameters
+    assert threshold.applied(EMPTY, {"threshold": 1.5}, METHODS).thresholds == {"ORB-BEBLID": 1.5}
+
+
+def test_values_of_ones_own_are_tried(tmp_path: Path) -> None:
+    file = tmp_path / "grid.json"
+    file.write_text(json.dumps({"threshold": [5, 15], "nonmaxSuppression": [True]}))
+    [subject] = subjects_of("FAST", METHODS, read_grid(file))
+    assert subject.settings == ({}, {"threshold": 15})
+    [descriptor] = subjects_of("descriptor:ORB", METHODS, {"WTA_K": (2,), "patchSize": (25, 31)})
+    assert (descriptor.kind, descriptor.settings) == ("descriptor", ({}, {"patchSize": 25}))
+    with pytest.raises(SelectionError, match="FAST has no parameter size; it has threshold"):
+        subjects_of("FAST", METHODS, {"size": (1,)})
+    for content in ("{", "[]", "{}", '{"a": 5}', '{"a": [[5]]}'):
+        file.write_text(content)
+        with pytest.raises(SelectionError, match="grid"):
+            read_grid(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("SURF", "nothing is known to try for SURF"),
+        ("detector:LATCH", "nothing is known to try for DETECTOR:LATCH"),
+        ("SIFT-ORB-HAM-BF", "cannot run"),
+        ("SIFT-SURF-L2-BF", "no descriptor SURF"),
+    ],
+)
+def test_what_cannot_be_searched_is_told(text: str, words: str) -> None:
+    with pytest.raises(SelectionError, match=words):
+        subjects_of(text, METHODS)

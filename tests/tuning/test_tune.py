@@ -1,0 +1,119 @@
+"""From images to a preset: what pays is kept, what does not stays at its default."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from aerocues.methods.presets import preset_named
+from tests.cli.conftest import Answer, Call, write_views
+
+WORKERS = ("--workers", 1)
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Views of a plane, several copies of which are several projects."""
+    folder = tmp_path_factory.mktemp("scenes") / "projects"
+    for name in ("north", "south"):
+        write_views(folder / name)
+    return folder
+
+
+def tune(call: Call, methods: str, scenes: Path, preset: Path, *more: object) -> Answer:
+    spec = f"uav:{scenes}"
+    return call("tune", methods, spec, "-o", preset, "--max-keypoints", 400, *WORKERS, *more)
+
+
+def test_what_pays_becomes_a_preset(call: Call, scenes: Path, tmp_path: Path) -> None:
+    grid = tmp_path / "grid.json"
+    grid.write_text(json.dumps({"bytes": [2, 32]}))
+    preset = tmp_path / "latch.json"
+    answer = tune(call, "LATCH", scenes, preset, "--grid", grid)
+    assert answer.code == 0, answer.err
+    assert "chosen by 3 pairs, judged by 3 others, divided by sequence" in answer.out
+    assert "1 of 1: descriptor LATCH: bytes=32: +" in answer.err
+    assert f"--preset {preset}" in answer.out
+    content = json.loads(preset.read_text())
+    assert content["descriptors"] == {"LATCH": {"bytes": 32}}
+    [search] = content["made"]["searches"]
+    assert search["kept"] is True
+    assert search["interval"][0] > 0
+    assert search["tuned"]["inliers"] > search["default"]["inliers"]
+    [dataset] = content["made"]["datasets"]
+    assert not {told.split(":")[0] for told in dataset["training"]} & {
+        told.split(":")[0] for told in dataset["validation"]
+    }
+    assert preset_named(str(preset)).descriptors == {"LATCH": {"bytes": 32}}
+
+    # Once more, nothing is measured, and the preset is the same.
+    parts = sorted((tmp_path / "latch-search" / "parts").iterdir())
+    again = tune(call, "LATCH", scenes, preset, "--grid", grid)
+    assert again.out == answer.out
+    assert sorted((tmp_path / "latch-search" / "parts").iterdir()) == parts
+    assert json.loads(preset.read_text()) == content
+
+    run = ("run", f"uav:{scenes}", "-o", tmp_path / "r", "--combinations", "ORB-LATCH-HAM-BF")
+    assert call(*run, *WORKERS, "--preset", preset).code == 0
+
+
+def test_what_does_not_pay_stays(call: Call, scenes: Path, tmp_path: Path) -> None:
+    grid = tmp_path / "grid.json"
+    grid.write_text(json.dumps({"edge_blur_size": [5, 4]}))
+    preset = tmp_path / "mser.json"
+    answer = tune(call, "MSER", scenes, preset, "--grid", grid)
+    assert answer.code == 0, answer.err
+    assert json.loads(preset.read_text())["detectors"] == {}
+
+
+def test_without_truth_thresholds_stay_and_large_grids_are_halved(
+    call: Call, scenes: Path, tmp_path: Path
+) -> None:
+    preset = tmp_path / "orb.json"
+    answer = tune(call, "ORB-BRIEF-HAM-BF", scenes, preset, "--objective", "excess_inliers")
+    assert answer.code == 0, answer.err
+    assert "threshold of ORB-BRIEF: default; no ground truth to judge thresholds by" in answer.err
+    content = json.loads(preset.read_text())
+    assert [each["tried"] for each in content["made"]["searches"]][:2] == [12, 6]
+    assert content["made"]["objective"] == "excess_inliers"
+
+
+def test_time_that_is_up_leaves_the_default(call: Call, scenes: Path, tmp_path: Path) -> None:
+    preset = tmp_path / "late.json"
+    answer = tune(call, "detector:BRISK,BRIEF", scenes, preset, "--budget", "0.01s")
+    assert answer.code == 0, answer.err
+    assert answer.err.count("time was up") == 2
+    assert json.loads(preset.read_text())["descriptors"] == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("SURF",), "nothing is known to try for SURF"),
+        (("LATCH", "--objective", "beauty"), "no criterion 'beauty'"),
+        (("LATCH", "--grid", "missing.json"), "cannot read the grid"),
+        (("LATCH", "--budget", "never"), "--budget never is no time"),
+    ],
+)
+def test_mistakes_are_told(
+    call: Call, scenes: Path, tmp_path: Path, words: tuple[str, ...], told: str
+) -> None:
+    answer = tune(call, words[0], scenes, tmp_path / "p.json", *words[1:])
+    assert answer.code == 2
+    assert told in answer.err
+    assert not (tmp_path / "p.json").exists()
+
+
+@pytest.mark.slow
+def test_thresholds_are_judged_by_the_truth(call: Call, shared_data: Path, tmp_path: Path) -> None:
+    preset = tmp_path / "p.json"
+    spec = f"oxford:{shared_data / 'oxford'}"
+    answer = call(
+        "tune", "SIFT-SIFT-L2-BF", spec, "-o", preset, "--max-keypoints", 1000, "--max-pairs", 6
+    )
+    assert answer.code == 0, answer.err
+    last = json.loads(preset.read_text())["made"]["searches"][-1]
+    assert last["subject"] == "threshold of SIFT-SIFT"
+    assert last["tried"] == 5
