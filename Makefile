@@ -22,7 +22,7 @@ PYTEST_ARGUMENTS :=
 
 OLDEST_VENV := .venv-oldest
 OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
-OLDEST_TOOLS := pytest|pytest-timeout|pytest-xdist|hypothesis|pillow|psutil
+OLDEST_TOOLS := pytest|pytest-timeout|pytest-xdist|hypothesis|pillow|psutil|numba|llvmlite
 OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
 
 .DEFAULT_GOAL := help
