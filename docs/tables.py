@@ -9,6 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from aerocues.evaluation import schema
 from aerocues.evaluation.metrics import METRICS
@@ -19,11 +20,13 @@ from aerocues.methods.compatibility import incompatibility, why_meaningless
 from aerocues.methods.descriptors import DESCRIPTORS
 from aerocues.methods.detectors import DETECTORS
 from aerocues.methods.matchers import MATCHERS, NORMS
-from aerocues.methods.presets import PRESETS
+from aerocues.methods.preset_files import tuned_record
+from aerocues.methods.presets import preset_named, preset_names
 from aerocues.methods.registry import opencv_methods
 from aerocues.scoring.criteria import CRITERIA
 from aerocues.scoring.settings import PRESETS as SCORE_PRESETS
 from aerocues.scoring.weights import WEIGHT_METHODS
+from aerocues.tuning.grids import GRIDS
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -60,8 +63,62 @@ def norms_and_matchers() -> Iterator[tuple[str, ...]]:
 def presets() -> Iterator[tuple[str, ...]]:
     """One row a preset."""
     yield "preset", "what it is", "chance test"
-    for preset in PRESETS:
+    for preset in map(preset_named, preset_names()):
         yield f"`{preset.name}`", preset.title, "yes" if preset.chance_test else "no"
+
+
+def grids() -> Iterator[tuple[str, ...]]:
+    """One row a method that can be tuned."""
+    yield "method", "judged with", "values", "on each detector"
+    for row in GRIDS:
+        yield (
+            f"{row.kind} `{row.method}`",
+            f"`{row.partner}`",
+            _values(row.values),
+            _values(row.on_each_detector),
+        )
+
+
+def _values(values: Mapping[str, tuple[object, ...]]) -> str:
+    return "; ".join(
+        f"{name}: {', '.join(map(_constant, tried))}" for name, tried in values.items()
+    )
+
+
+def _constant(value: object) -> str:
+    """A value; of a constant the name without its class."""
+    return value.rpartition(".")[2] if isinstance(value, str) else str(value)
+
+
+def tuned() -> Iterator[tuple[str, ...]]:
+    """One row a search of the preset `tuned`."""
+    yield (
+        *("searched", "best setting", "used", "gain in CUES (95 %)"),
+        *("inlier ratio", "inliers", "true precision"),
+    )
+    for part in tuned_record()["made"]:
+        for search in part["searches"]:
+            yield _searched(search)
+
+
+def _searched(search: Mapping[str, Any]) -> tuple[str, ...]:
+    if search["default"] is None:
+        return (search["subject"], "default", "", *("",) * 4)
+    low, high = search["interval"]
+    before, after = search["default"], search["tuned"]
+    figures = (
+        (before[name], after[name]) for name in ("inlier_ratio", "inliers", "true_precision")
+    )
+    return (
+        search["subject"],
+        _parameters({name: _constant(value) for name, value in search["best"].items()}),
+        "yes" if search["kept"] else "no",
+        f"{search['gain']:+.3f} ({low:+.3f} to {high:+.3f})",
+        *(
+            "" if None in (old, new) else f"{old:{form}} to {new:{form}}"
+            for (old, new), form in zip(figures, (".2f", ",.0f", ".2f"), strict=True)
+        ),
+    )
 
 
 def compatibility() -> Iterator[tuple[str, ...]]:
@@ -181,6 +238,7 @@ TABLES: dict[str, tuple[Table, ...]] = {
     "metrics.md": (counts, metrics, ground_truth, times),
     "reconstruction.md": (reconstruction_statuses, reconstructions),
     "results.md": (names, provenance),
+    "tuning.md": (tuned, grids),
     "scoring.md": (weight_methods, score_presets, criteria),
 }
 

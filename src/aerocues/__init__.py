@@ -3,6 +3,7 @@
     import aerocues
 
     dataset = aerocues.open_dataset("photos", max_width=1000)
+    print(aerocues.recommend(dataset, "race").best)
     results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
     print(aerocues.score(results).frame("combination"))
     aerocues.reconstruct("photos", "models", results="results", top=5)
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
     from aerocues.scoring.measured import score
     from aerocues.scoring.outcomes import relate_outcomes
     from aerocues.scoring.ranking import Ranking
+    from aerocues.tuning.recommend import RaceOptions, Recommendation, recommend
+    from aerocues.tuning.tune import TuneOptions, tune
 
     __version__: str
 
@@ -51,6 +54,11 @@ _MODULES = {
     "relate_outcomes": "scoring.outcomes",
     "Ranking": "scoring.ranking",
     "write_report": "report.report",
+    "recommend": "tuning.recommend",
+    "RaceOptions": "tuning.recommend",
+    "Recommendation": "tuning.recommend",
+    "tune": "tuning.tune",
+    "TuneOptions": "tuning.tune",
     "Combination": "methods.combination",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
@@ -68,17 +76,22 @@ __all__ = [
     "Matches",
     "Models",
     "Observer",
+    "RaceOptions",
     "Ranking",
+    "Recommendation",
     "ReconstructionOptions",
     "ReconstructionProtocol",
     "Results",
+    "TuneOptions",
     "__version__",
     "import_results",
     "open_dataset",
+    "recommend",
     "reconstruct",
     "relate_outcomes",
     "run",
     "score",
+    "tune",
     "write_report",
 ]
 

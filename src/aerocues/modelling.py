@@ -10,7 +10,7 @@ from aerocues.errors import ReconstructionError
 from aerocues.evaluation.results import Results
 from aerocues.methods.combination import Combination
 from aerocues.methods.preset_files import recorded_preset
-from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.presets import Preset, preset_named, preset_names
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
@@ -143,6 +143,6 @@ def preset_of_results(results: str | Path | None) -> Preset:
     """The preset that results were measured under; the default one where that is not known."""
     if results is not None:
         settings = Results(results).settings
-        if "preset_parts" in settings or settings.get("preset") in {each.name for each in PRESETS}:
+        if "preset_parts" in settings or settings.get("preset") in preset_names():
             return recorded_preset(settings)
     return preset_named("default")

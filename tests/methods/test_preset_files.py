@@ -8,8 +8,14 @@ import pytest
 
 from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
-from aerocues.methods.preset_files import preset_of, read_preset, recorded_preset, write_preset
-from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.preset_files import (
+    preset_of,
+    read_preset,
+    recorded_preset,
+    tuned_record,
+    write_preset,
+)
+from aerocues.methods.presets import Preset, preset_named, preset_names
 from aerocues.methods.registry import Methods
 
 MINE = Preset(
@@ -58,6 +64,7 @@ def test_parameters_of_a_descriptor_may_depend_on_the_detector(methods: Methods)
         ('{"detectors": {"ORB": 5}}', "detectors must hold methods, each with parameters"),
         ('{"thresholds": {"ORB-ORB": -1}}', "thresholds must hold pixels"),
         ('{"name": "thesis"}', "thesis is the name of another preset"),
+        ('{"name": "Tuned"}', "Tuned is the name of another preset"),
     ],
 )
 def test_what_is_no_preset_is_told_in_a_line(tmp_path: Path, text: str, told: str) -> None:
@@ -84,6 +91,31 @@ def test_what_no_method_has_is_refused(methods: Methods, parts: dict[str, Any], 
 def test_a_run_remembers_its_preset_whole() -> None:
     from dataclasses import asdict
 
-    for preset in (MINE, *PRESETS):
+    for preset in (MINE, *map(preset_named, preset_names())):
         assert recorded_preset({"preset": preset.name, "preset_parts": asdict(preset)}) == preset
     assert recorded_preset({"preset": "thesis"}) == preset_named("thesis")
+
+
+def test_the_preset_tuned_holds_what_its_searches_kept_and_nothing_else() -> None:
+    preset = preset_named("Tuned")
+    kept = [
+        search for part in tuned_record()["made"] for search in part["searches"] if search["kept"]
+    ]
+    assert all(search["interval"][0] > 0 and search["gain"] >= 0.005 for search in kept)
+    assert {search["subject"] for search in kept if " on " not in search["subject"]} == {
+        *(f"detector {name}" for name in preset.detectors),
+        *(f"descriptor {name}" for name in preset.descriptors),
+    }
+    assert preset.chance_test
+    assert preset.descriptors["LATCH"] == {"bytes": 64}
+
+
+def test_the_preset_tuned_was_judged_on_scenes_that_it_was_not_chosen_by() -> None:
+    for part in tuned_record()["made"]:
+        chosen_by, judged_by = (
+            {scene.partition(":")[0] for data in part["datasets"] for scene in data[side]}
+            for side in ("training", "validation")
+        )
+        assert chosen_by
+        assert judged_by
+        assert not chosen_by & judged_by

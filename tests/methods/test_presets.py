@@ -6,7 +6,7 @@ import pytest
 
 from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
-from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.presets import Preset, preset_named, preset_names
 from aerocues.methods.registry import Methods
 
 
@@ -16,13 +16,13 @@ def test_presets_are_found_in_any_case() -> None:
 
 
 def test_an_unknown_preset_names_the_known() -> None:
-    with pytest.raises(SelectionError, match="choose one of default, thesis"):
+    with pytest.raises(SelectionError, match="choose one of default, thesis, tuned"):
         preset_named("best")
 
 
 def test_every_preset_fits_the_methods(methods: Methods) -> None:
-    for preset in PRESETS:
-        changed = methods.with_preset(preset)
+    for name in preset_names():
+        changed = methods.with_preset(preset_named(name))
         assert list(changed.detectors) == list(methods.detectors)
 
 

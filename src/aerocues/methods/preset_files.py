@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from aerocues.errors import SelectionError
-from aerocues.methods.presets import PRESETS, Preset, preset_named
+from aerocues.methods.presets import Preset, preset_named, preset_names
 
 _GROUPS = ("detectors", "descriptors", "on_detectors")
 _KNOWN = ("name", "title", "chance_test", *_GROUPS, "thresholds", "made")
@@ -44,8 +45,24 @@ def preset_of(content: Mapping[str, Any], where: str) -> Preset:
     if unknown:
         raise SelectionError(f"{where}: {unknown[0]} is unknown; a preset has {_known()}")
     name = str(content["name"])
-    if name.lower() in {preset.name for preset in PRESETS} and content != asdict(_built_in(name)):
+    if name.lower() in preset_names() and content != asdict(preset_named(name)):
         raise SelectionError(f"{where}: {name} is the name of another preset; choose a new one")
+    return _assembled(content, where)
+
+
+def tuned_preset() -> Preset:
+    """The preset of parameters that were searched; benchmarks/tuned_preset.py made it."""
+    return _assembled(tuned_record(), "the preset tuned")
+
+
+def tuned_record() -> dict[str, Any]:
+    """Everything in the file of the preset `tuned`, how it was made among it."""
+    file = files("aerocues.methods").joinpath("tuned.json")
+    content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return content
+
+
+def _assembled(content: Mapping[str, Any], where: str) -> Preset:
     groups: dict[str, Any] = {}
     for group in _GROUPS:
         groups[group] = content.get(group, {})
@@ -60,7 +77,7 @@ def preset_of(content: Mapping[str, Any], where: str) -> Preset:
     ):
         raise SelectionError(f'{where}: thresholds must hold pixels, such as {{"ORB-BEBLID": 1.5}}')
     return Preset(
-        name=name,
+        name=str(content["name"]),
         title=str(content.get("title", f"from {where}")),
         chance_test=bool(content.get("chance_test", True)),
         **groups,
@@ -86,10 +103,6 @@ def write_preset(path: Path, preset: Preset, made: Mapping[str, Any]) -> None:
     text = json.dumps({**asdict(preset), "made": dict(made)}, indent=1)
     part.write_text(f"{text}\n", encoding="utf-8")
     part.replace(path)
-
-
-def _built_in(name: str) -> Preset:
-    return next(preset for preset in PRESETS if preset.name == name.lower())
 
 
 def _is_overrides(group: Any) -> bool:

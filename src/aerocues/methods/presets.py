@@ -80,6 +80,14 @@ PRESETS: tuple[Preset, ...] = (
     Preset("thesis", "parameters and protocol of the thesis", chance_test=False),
 )
 
+TUNED = "tuned"
+"""The preset that aerocues brings along in a file: see `preset_files.tuned_preset`."""
+
+
+def preset_names() -> tuple[str, ...]:
+    """Names of the presets that aerocues brings along."""
+    return (*(preset.name for preset in PRESETS), TUNED)
+
 
 def preset_named(name: str) -> Preset:
     """The preset called `name`, in any case, or of the file of that path.
@@ -92,11 +100,15 @@ def preset_named(name: str) -> Preset:
     for preset in PRESETS:
         if preset.name == name.lower():
             return preset
+    if name.lower() == TUNED:
+        from aerocues.methods.preset_files import tuned_preset
+
+        return tuned_preset()
     if Path(name).is_file():
         from aerocues.methods.preset_files import read_preset
 
         return read_preset(Path(name))
-    known = ", ".join(preset.name for preset in PRESETS)
+    known = ", ".join(preset_names())
     raise SelectionError(f"there is no preset {name!r}; choose one of {known}, or give a file")
 
 
