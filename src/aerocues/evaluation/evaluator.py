@@ -45,10 +45,11 @@ class Evaluator:
 
     def __init__(self, context: Context, announce: Announce) -> None:
         cv2.setNumThreads(1)
-        clock = Clock(memory=context.protocol.timing == "exclusive")
+        protocol = context.protocol
+        clock = Clock(protocol.seed, exclusive=protocol.timing == "exclusive")
         self._context = context
         self._announce = announce
-        self._extractor = FeatureExtractor(clock, context.protocol.seed, context.protocol.limit)
+        self._extractor = FeatureExtractor(clock, protocol.seed, protocol.limit)
         self._two_views = TwoViewMeasurement(context, clock, announce)
         self._cache = FeatureCache()
         self._detectors: dict[str, DetectorStage] = {}

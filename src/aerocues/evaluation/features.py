@@ -52,6 +52,15 @@ def run_stage(what: str, call: Callable[[], Result]) -> Result:
         raise StageError("error", f"{what}: {kind}: {error}") from error
 
 
+def warm_up(call: Callable[[], Any]) -> None:
+    """Call a method on little, for what only the first call takes time for."""
+    try:
+        run_stage("warming up", call)
+    except StageError:
+        # The timed call right after fails the same way and is recorded.
+        return
+
+
 @dataclass(frozen=True)
 class Described:
     """Features of one image under one descriptor, with the time that describing took."""
@@ -104,8 +113,7 @@ class FeatureExtractor:
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
             self._warm.add(("detector", name))
-            self._warm_up(lambda: detector.call(_centre(pixels.bgr)))
-        cv2.setRNGSeed(self._seed)
+            warm_up(lambda: detector.call(_centre(pixels.bgr)))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
         inner = Pixels(pixels.bgr, _inner(pixels.valid))
@@ -124,19 +132,11 @@ class FeatureExtractor:
         if ("descriptor", name) not in self._warm and len(image.keypoints):
             self._warm.add(("descriptor", name))
             few = descriptor.prepare(image.keypoints.take(np.arange(1)))
-            self._warm_up(lambda: descriptor.call(bgr, few))
-        cv2.setRNGSeed(self._seed)
+            warm_up(lambda: descriptor.call(bgr, few))
         raw, time = run_stage(
             what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
         )
         return Described(run_stage(what, lambda: descriptor.read(raw)), time)
-
-    def _warm_up(self, call: Callable[[], Any]) -> None:
-        try:
-            run_stage("warming up", call)
-        except StageError:
-            # The timed call right after fails the same way and is recorded.
-            return
 
 
 def _centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -172,6 +172,7 @@ def make_plan(
     combinations: Sequence[Combination],
     is_present: Callable[[str], bool],
     progress: Callable[[int, int], None] = lambda done, total: None,
+    pairs: frozenset[int] | None = None,
 ) -> Plan:
     """Divide the work into units, the costliest first.
 
@@ -184,6 +185,8 @@ def make_plan(
         Whether the row with a given key is in the store.
     progress : callable
         Told how many of all images have been read for their hashes.
+    pairs : frozenset of int, optional
+        Numbers of the pairs to plan for; all by default.
 
     Raises
     ------
@@ -201,7 +204,9 @@ def make_plan(
     detectors = dict.fromkeys(combination.detector for combination in combinations)
     units = [
         unit
-        for group in _groups(context.dataset.pairs)
+        for group in _groups(
+            [p for p in context.dataset.pairs if pairs is None or p.index in pairs]
+        )
         for detector in detectors
         if (unit := planner.unit(detector, group)) is not None
     ]

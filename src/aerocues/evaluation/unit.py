@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.protocol import MeasurementProtocol
+from aerocues.evaluation.protocol import MeasurementProtocol, Timing
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 
@@ -86,6 +86,10 @@ class Context:
     protocol: MeasurementProtocol
     settings_key: str
     machine: str
+
+    def timed(self, timing: Timing) -> Context:
+        """The same with another timing, which no row key depends on."""
+        return replace(self, protocol=replace(self.protocol, timing=timing))
 
 
 def _blamed(work: PairWork, call: StageCall, pairs: frozenset[int]) -> frozenset[Combination]:
