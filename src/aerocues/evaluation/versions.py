@@ -2,28 +2,46 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-PACKAGES = ("aerocues", "opencv-contrib-python-headless", "numpy", "scipy", "polars", "pyarrow")
+PACKAGES = (
+    "aerocues",
+    "opencv-contrib-python-headless",
+    "opencv-contrib-python",
+    "opencv-python-headless",
+    "opencv-python",
+    "numpy",
+    "scipy",
+    "polars",
+    "pyarrow",
+)
+# What a board says it is. All Jetsons of a generation have the same text in /proc/cpuinfo.
+BOARD = Path("/proc/device-tree/model")
 
 
 def software_versions() -> dict[str, str]:
-    """Versions of Python and of the packages that a measurement depends on."""
+    """Versions of Python, of OpenCV as it says itself, and of the packages that are installed.
+
+    OpenCV of a board's system is no package, and the light install has no pyarrow.
+    """
     import cv2
 
     found = {"python": platform.python_version(), "opencv": cv2.__version__}
     for name in PACKAGES:
-        try:
+        with contextlib.suppress(PackageNotFoundError):
             found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed as a package"
     return found
 
 
 def _processor() -> str:
+    with contextlib.suppress(OSError):  # no board, or a telephone that keeps it to itself
+        board = BOARD.read_text(errors="replace").strip("\0 \n")
+        if board:
+            return board
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith(("model name", "Model")):
@@ -34,7 +52,7 @@ def _processor() -> str:
 
 
 def machine_name() -> str:
-    """Processor and number of cores, without anything that names the owner."""
+    """Board or processor and number of cores, without anything that names the owner."""
     return f"{_processor()}, {os.cpu_count()} cores"
 
 
