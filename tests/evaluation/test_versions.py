@@ -47,3 +47,15 @@ def test_a_machine_that_is_no_board_is_called_after_its_processor(
     assert re.fullmatch(r".+, \d+ cores", name)
     (tmp_path / "missing").write_bytes(b"\0")
     assert versions.machine_name() == name
+
+
+def test_the_governor_of_the_clock_is_recorded_where_there_is_one(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(versions, "CORES", tmp_path)
+    assert "governor" not in versions.machine_facts()
+    for core in range(2):
+        folder = tmp_path / f"cpu{core}" / "cpufreq"
+        folder.mkdir(parents=True)
+        (folder / "scaling_governor").write_text("performance\n")
+    assert versions.machine_facts()["governor"] == "performance"

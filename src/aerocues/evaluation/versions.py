@@ -22,6 +22,8 @@ PACKAGES = (
 # What a board says it is. All Jetsons of a generation have the same text in /proc/cpuinfo.
 BOARD = Path("/proc/device-tree/model")
 
+CORES = Path("/sys/devices/system/cpu")
+
 
 def software_versions() -> dict[str, str]:
     """Versions of Python, of OpenCV as it says itself, and of the packages that are installed.
@@ -56,11 +58,22 @@ def machine_name() -> str:
     return f"{_processor()}, {os.cpu_count()} cores"
 
 
+def _governors() -> str:
+    """How the cores choose their clocks, such as ``performance``; empty where it is not told."""
+    found = set()
+    for file in CORES.glob("cpu[0-9]*/cpufreq/scaling_governor"):
+        with contextlib.suppress(OSError):
+            found.add(file.read_text().strip())
+    return ", ".join(sorted(found))
+
+
 def machine_facts() -> dict[str, str | int]:
-    """The machine as it is recorded in ``run.json``."""
+    """The machine as it is recorded in ``run.json``, with how it chooses its clock if it tells."""
     import psutil
 
+    governors = _governors()
     return {
+        **({"governor": governors} if governors else {}),
         "name": machine_name(),
         "system": f"{platform.system()} {platform.release()}",
         "architecture": platform.machine(),
