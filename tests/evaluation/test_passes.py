@@ -62,6 +62,14 @@ def test_only_exclusive_timing_of_some_pairs_takes_two_passes() -> None:
     assert len(second.pairs) == 2
 
 
+def test_without_exact_search_the_first_pass_waits_for_brute_force(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("aerocues.evaluation.passes.why_not_exact", lambda: "no numba")
+    first, second = passes(pairs_of(*"aaaaaa"), "exclusive", 2, 0)
+    assert (first, second.timing) == (Pass("shared"), "exclusive")
+
+
 def test_the_sample_is_spread_over_sequences_and_grows(tmp_path: Path) -> None:
     pairs = pairs_of(*"aaaaabbbccccccd")
     samples = []
