@@ -98,6 +98,10 @@ def run(
         float | None,
         typer.Option(min=0.1, metavar="GB", help="Memory of a worker; its share of 80 %."),
     ] = None,
+    features: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Keep features here, and take what is there."),
+    ] = None,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Measure again what failed on this machine.")
     ] = False,
@@ -145,7 +149,7 @@ def run(
 
             print_plan(arguments)
             return
-        arguments["limits"] = _limits(workers, timeout, memory_limit)
+        arguments |= {"limits": _limits(workers, timeout, memory_limit), "features": features}
         _print_results(_measure(arguments), images.name, top)
 
 

@@ -109,16 +109,23 @@ class FeatureExtractor:
 
     def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
         """Decode an image and detect its keypoints; StageError where that fails."""
-        pixels = run_stage(f"reading {image.name}", image.read)
+        pixels = self._pixels(image)
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
             self._warm.add(("detector", name))
             warm_up(lambda: detector.call(_centre(pixels.bgr)))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
-        inner = Pixels(pixels.bgr, _inner(pixels.valid))
-        kept = self._limit.keep(_on_valid_pixels(found, inner.valid), self._seed)
-        return ImageFeatures(inner, kept, time)
+        kept = self._limit.keep(_on_valid_pixels(found, pixels.valid), self._seed)
+        return ImageFeatures(pixels, kept, time)
+
+    def read(self, image: Image, keypoints: Keypoints, detect_time: StageTime) -> ImageFeatures:
+        """An image with keypoints that were detected before; StageError if it cannot be read."""
+        return ImageFeatures(self._pixels(image), keypoints, detect_time)
+
+    def _pixels(self, image: Image) -> Pixels:
+        pixels = run_stage(f"reading {image.name}", image.read)
+        return Pixels(pixels.bgr, _inner(pixels.valid))
 
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage

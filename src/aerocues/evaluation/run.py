@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -125,6 +125,7 @@ def run(
     timed_pairs: int = TIMED_PAIRS,
     limit: KeypointLimit = ALL_KEYPOINTS,
     limits: Limits | None = None,
+    features: str | Path | None = None,
     retry_failed: bool = False,
     observer: Observer | None = None,
     engine: Engine | None = None,
@@ -159,6 +160,8 @@ def run(
         How many keypoints of an image are kept; all by default.
     limits : Limits, optional
         Workers, time and memory.
+    features : path, optional
+        Folder in which features are kept, and found by other runs.
     retry_failed : bool
         Measure again what crashed, raised an error, ran out of time or memory.
     observer : Observer, optional
@@ -180,6 +183,10 @@ def run(
     observer = observer or Observer()
     parts = as_preset(preset)
     context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
+    if features is not None:
+        from aerocues.evaluation.feature_folder import checked_folder
+
+        context = replace(context, features=checked_folder(Path(features).absolute()))
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
     turns = passes(dataset.pairs, timing, timed_pairs, seed)
