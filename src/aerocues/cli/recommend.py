@@ -58,7 +58,10 @@ def recommend(
         str | None, typer.Option(metavar="GLOBS", help="These only, such as 'ORB-*,SIFT-SIFT-*'.")
     ] = None,
     preset: Annotated[
-        str, typer.Option(metavar="NAME", help="Parameters: default, thesis, or a preset's file.")
+        str,
+        typer.Option(
+            metavar="NAME", help="Parameters: default, thesis, tuned, or a preset's file."
+        ),
     ] = "default",
     max_keypoints: Annotated[
         int, typer.Option(min=0, metavar="N", help="The strongest of an image; 0: all.")

@@ -45,7 +45,10 @@ def run(
         bool, typer.Option("--all", help="All that can run, not only those that mean something.")
     ] = False,
     preset: Annotated[
-        str, typer.Option(metavar="NAME", help="Parameters: default, thesis, or a preset's file.")
+        str,
+        typer.Option(
+            metavar="NAME", help="Parameters: default, thesis, tuned, or a preset's file."
+        ),
     ] = "default",
     max_keypoints: Annotated[
         int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
