@@ -18,6 +18,13 @@ if TYPE_CHECKING:
 MEGABYTES = 1024
 
 
+class Engine(StrEnum):
+    """Values of ``--engine``."""
+
+    LOCAL = "local"
+    DASK = "dask"
+
+
 class Timing(StrEnum):
     """Values of ``--timing``."""
 
@@ -76,6 +83,15 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
     ] = None,
+    engine: Annotated[
+        Engine, typer.Option(help="Where: processes on this machine, or a Dask cluster.")
+    ] = Engine.LOCAL,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Of Dask, such as tcp://host:8786.")
+    ] = None,
+    resource: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only Dask workers that offer this resource.")
+    ] = None,
     timing: Annotated[
         Timing,
         typer.Option(
@@ -108,6 +124,7 @@ def run(
     Each result is kept as soon as it is there. Stop at any moment and run the same command again:
     what is finished is not measured twice.
     """
+    from aerocues.cli.cluster import engine_on
     from aerocues.cli.interruption import interruptible
     from aerocues.datasets.catalog import open_dataset
 
@@ -139,8 +156,10 @@ def run(
 
             print_plan(arguments)
             return
-        arguments["limits"] = _limits(workers, timeout, memory_limit)
-        _print_results(_measure(arguments), images.name, top)
+        arguments["limits"] = limits = _limits(workers, timeout, memory_limit)
+        with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
+            results = _measure({**arguments, "engine": chosen})
+        _print_results(results, images.name, top)
 
 
 def _limit(max_keypoints: int, spread: bool) -> KeypointLimit:
@@ -196,6 +215,7 @@ def _report_end(tally: Tally) -> None:
 def _print_results(results: Results, dataset: str, top: int) -> None:
     import polars as pl
 
+    from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
 
     table = results.table().filter(pl.col("dataset") == dataset)
@@ -207,6 +227,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     folder = shlex.quote(str(results.folder))
     for line in (
         f"\nrows     {len(table):,}: {by_status}",
+        *machine_lines(table),
         f"results  {results.folder}",
         f"next     aerocues status {folder}",
         f"         aerocues score {folder}",
