@@ -43,7 +43,8 @@ def engine_on(
         raise SelectionError(
             "a cluster has the workers that were started with 'dask worker'; leave --workers out"
         )
-    from aerocues.evaluation.dask_engine import DaskEngine, connected
+    from aerocues.evaluation.dask_engine import DaskEngine
+    from aerocues.evaluation.dask_scheduler import connected
 
     with connected(scheduler) as client:
         engine = DaskEngine(client, limits.timeout, limits.memory_limit_mb, resource)

@@ -14,6 +14,7 @@ from aerocues.errors import EngineError, ImageError
 from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.giving_up import settle_loss
+from aerocues.evaluation.run import DEFAULT_TIMEOUT
 from aerocues.evaluation.unit import Context, StageCall, Unit
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
     from aerocues.evaluation.dask_worker import Measured, Report, UnitMeasurer
 
-DEFAULT_TIMEOUT = 600.0
-CONNECT_SECONDS = 10.0
 POLL_SECONDS = 0.1
 SECONDS_BETWEEN_COUNTS = 2.0
 # For results on their way: a worker that is lost with them makes Dask measure the unit again.
@@ -34,33 +33,6 @@ RETRIES = 2
 AGAIN = "run the same command again: what is finished is kept"
 
 
-@contextlib.contextmanager
-def connected(scheduler: str) -> Iterator[Client]:
-    """A client of the Dask scheduler at an address such as ``tcp://host:8786``.
-
-    Raises
-    ------
-    EngineError
-        If there is none, or ``distributed`` is not installed.
-    """
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise EngineError(
-            f"--engine dask needs a package that is not installed ({error}); "
-            "pip install 'aerocues[dask]'"
-        ) from error
-    try:
-        client = Client(scheduler, timeout=CONNECT_SECONDS, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise EngineError(
-            f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
-            "the address that it prints, such as --scheduler tcp://HOST:8786"
-        ) from error
-    with client:
-        yield client
-
-
 @dataclass(frozen=True)
 class DaskEngine:
     """The workers of a Dask cluster, which may come and go.
@@ -68,7 +40,8 @@ class DaskEngine:
     Parameters
     ----------
     client : distributed.Client
-        Of `connected`, or of any cluster that Dask knows, such as ``dask_jobqueue.SLURMCluster``.
+        Of `dask_scheduler.connected`, or of any cluster that Dask knows, such as
+        ``dask_jobqueue.SLURMCluster``.
     timeout : float
         CPU seconds that one stage call may use, and wall seconds for which it may sit idle.
     memory_limit_mb : int or None
@@ -262,15 +235,15 @@ class _Dispatch:
     ) -> tuple[Finished | None, list[Unit]]:
         """Divide a unit in which several Dask workers died, one after the other."""
         heard = self._heard.get(key)
-        call = heard.call if heard else None
+        if heard is None or heard.report["worker"] != error.last_worker.address:
+            return None, [unit]  # it was only waiting there: another one did it
+        deaths = error.allowed_failures + 1
         message = (
-            f"{error.allowed_failures + 1} Dask workers died in {call or 'this pair'}, the last "
-            f"at {error.last_worker.address}"
+            f"{deaths} Dask worker{'s' if deaths > 1 else ''} died in "
+            f"{heard.call or 'this pair'}, the last at {error.last_worker.address}"
         )
-        machine = heard.report["machine"] if heard else self._context.machine
-        return settle_loss(
-            replace(self._context, machine=machine), unit, Loss("crashed", message, call)
-        )
+        context = replace(self._context, machine=heard.report["machine"])
+        return settle_loss(context, unit, Loss("crashed", message, heard.call))
 
     def _refuse_unreadable(self, measured: Measured) -> None:
         """Tell images that only a worker cannot read from broken ones.

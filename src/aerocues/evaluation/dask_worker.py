@@ -197,14 +197,19 @@ class _Reporter:
         self._measurer = measurer
         self._key = key
         self._told = float("-inf")
+        self._has_called = False
 
     def __call__(self, activities: Sequence[Activity]) -> None:
         self._measurer.check()
+        if not activities:
+            return
+        activity = activities[0]
         now = time.monotonic()
-        if now - self._told < SECONDS_BETWEEN_REPORTS or not activities:
+        is_first_call = activity.call is not None and not self._has_called
+        if now - self._told < SECONDS_BETWEEN_REPORTS and not is_first_call:
             return
         self._told = now
-        activity = activities[0]
+        self._has_called |= is_first_call
         report = Report(
             key=self._key,
             worker=self._worker.address,
