@@ -67,7 +67,7 @@ def test_without_distributed_the_extra_is_named(
 
 def test_several_kinds_of_machine_are_named() -> None:
     table = pl.DataFrame({"machine": ["board", "laptop", "board", None]})
-    assert machine_lines(table)[0] == "machines 2 rows on board; 1 row on laptop"
+    assert machine_lines(table) == ["machines 2 rows on board; 1 row on laptop"]
     assert machine_lines(table.head(1)) == []
 
 
