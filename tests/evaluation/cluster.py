@@ -1,4 +1,4 @@
-"""A Dask cluster of separate processes on this machine, and images that only some can read."""
+"""A Dask cluster of separate processes on this machine."""
 
 from __future__ import annotations
 
@@ -12,22 +12,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from aerocues.datasets.dataset import Pixels
-from aerocues.datasets.decoding import FileSource
-from aerocues.errors import ImageError
-
 START_SECONDS = 60.0
-NOT_MOUNTED = "AEROCUES_TEST_NOT_MOUNTED"
-
-
-@dataclass(frozen=True)
-class Mounted(FileSource):
-    """A file in a folder that processes with a certain environment variable do not have."""
-
-    def read(self) -> Pixels:
-        if NOT_MOUNTED in os.environ:
-            raise ImageError(f"{self.path} cannot be read: no such file; check the path")
-        return super().read()
 
 
 @dataclass

@@ -14,17 +14,17 @@ import pytest
 pytest.importorskip("distributed")
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.datasets.decoding import FileSource
 from aerocues.errors import EngineError
 from aerocues.evaluation import dask_worker
 from aerocues.evaluation.dask_engine import DaskEngine
 from aerocues.evaluation.dask_scheduler import connected
 from aerocues.evaluation.engine import Activity, Finished
+from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import Limits, Observer, run
 from aerocues.evaluation.store import Store
 from aerocues.evaluation.versions import software_versions
-from tests.evaluation.cluster import NOT_MOUNTED, Cluster, Mounted
+from tests.evaluation.cluster import Cluster
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
@@ -197,21 +197,29 @@ def test_what_takes_workers_down_is_named(
     )
 
 
-def test_images_that_a_worker_cannot_read_are_an_error(
-    cluster: Cluster, views: Dataset, tmp_path: Path
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (Path.unlink, r"cannot read an image that the run has: .*; mount the folder"),
+        (lambda path: path.write_bytes(b"other"), r"has another image view_1\.png than the run"),
+    ],
+)
+def test_a_worker_without_the_images_is_an_error(
+    cluster: Cluster, tmp_path: Path, change: Callable[[Path], object], words: str
 ) -> None:
-    cluster.environment[NOT_MOUNTED] = "1"
+    """The file changes after it was read here, as if it were never like that at the worker."""
+    dataset = write_dataset(tmp_path / "images", strip(2))
     cluster.add_worker()
-    images = []
-    for image in views.images:
-        assert isinstance(image.source, FileSource)
-        images.append(dataclasses.replace(image, source=Mounted(image.source.path)))
-    dataset = dataclasses.replace(views, images=images)
+
+    class Changing(Observer):
+        def planned(self, plan: Plan) -> None:
+            change(tmp_path / "images" / "view_1.png")
+
     with (
         connected(cluster.address) as client,
-        pytest.raises(EngineError, match=r"the worker tcp://.* cannot read .* mount the folder"),
+        pytest.raises(EngineError, match=words),
     ):
-        run(dataset, FEW, tmp_path / "r", engine=DaskEngine(client))
+        run(dataset, FEW, tmp_path / "r", engine=DaskEngine(client), observer=Changing())
 
 
 def test_a_worker_with_other_versions_is_an_error(

@@ -10,7 +10,7 @@ from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from aerocues.errors import EngineError, ImageError
+from aerocues.errors import EngineError
 from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.giving_up import settle_loss
@@ -20,7 +20,7 @@ from aerocues.evaluation.unit import Context, StageCall, Unit
 if TYPE_CHECKING:
     from distributed import Client, Future, KilledWorker
 
-    from aerocues.evaluation.dask_worker import Measured, Report, UnitMeasurer
+    from aerocues.evaluation.dask_worker import Report, UnitMeasurer
 
 POLL_SECONDS = 0.1
 SECONDS_BETWEEN_COUNTS = 2.0
@@ -79,7 +79,7 @@ class DaskEngine:
         Raises
         ------
         EngineError
-            If the scheduler is lost, a worker has other versions or cannot read the images.
+            If the scheduler is lost, or a worker has other versions or not the same images.
         """
         from aerocues.evaluation.dask_worker import UnitMeasurer
 
@@ -141,7 +141,7 @@ class _Dispatch:
         self._name = name
         self._context = context
         self._queue = deque(units)
-        self._given: dict[str, tuple[Future[Measured], Unit]] = {}
+        self._given: dict[str, tuple[Future[list[Finished]], Unit]] = {}
         self._heard: dict[str, _Heard] = {}
         self._numbers: dict[str, int] = {}
         self._count = 0
@@ -212,7 +212,7 @@ class _Dispatch:
 
         future, unit = self._given[key]
         try:
-            measured = future.result(timeout=RESULT_SECONDS)
+            finished = future.result(timeout=RESULT_SECONDS)
         except TimeoutError:
             return  # it is measured once more
         except CancelledError as error:
@@ -225,8 +225,7 @@ class _Dispatch:
             if given_up is not None:
                 yield given_up
         else:
-            self._refuse_unreadable(measured)
-            yield from measured.finished
+            yield from finished
         del self._given[key]
         self._heard.pop(key, None)
 
@@ -244,20 +243,3 @@ class _Dispatch:
         )
         context = replace(self._context, machine=heard.report["machine"])
         return settle_loss(context, unit, Loss("crashed", message, heard.call))
-
-    def _refuse_unreadable(self, measured: Measured) -> None:
-        """Tell images that only a worker cannot read from broken ones.
-
-        Raises
-        ------
-        EngineError
-        """
-        for name, reason in measured.unreadable.items():
-            try:
-                self._context.dataset.image(name).read()
-            except ImageError:
-                continue  # it is broken for all
-            raise EngineError(
-                f"the worker {measured.worker} cannot read an image that is here: {reason}; mount "
-                f"the folder of the images there under the same path and {AGAIN}"
-            )

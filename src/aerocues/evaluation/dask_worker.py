@@ -12,7 +12,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TypedDict
 
@@ -44,24 +44,6 @@ class Report(TypedDict):
     seconds: float
 
 
-@dataclass(frozen=True)
-class Measured:
-    """What became of a unit.
-
-    Parameters
-    ----------
-    finished : list of Finished
-    worker : str
-        Address of the Dask worker.
-    unreadable : mapping of str to str
-        Images of failed rows that the worker cannot read, and why.
-    """
-
-    finished: list[Finished]
-    worker: str
-    unreadable: Mapping[str, str]
-
-
 class UnitMeasurer(WorkerPlugin):
     """Is with each worker of a cluster, also with those that come late, as long as a run lasts.
 
@@ -84,12 +66,16 @@ class UnitMeasurer(WorkerPlugin):
         self._timeout = timeout
         self._memory_limit_mb = memory_limit_mb
         self._versions = software_versions()
+        self._image_keys = {
+            image.name: image.source.content_key() for image in context.dataset.images
+        }
 
     def setup(self, worker: Worker) -> None:
         self._worker = worker
         self._context = replace(self._context, machine=machine_name())
         self._memory = self._memory_limit_mb or _memory_of(worker)
         self._different = _different_versions(self._versions)
+        self._checked: set[str] = set()
         self._ending = threading.Event()
         self._lock = threading.Lock()
         self._idle: list[WorkerPool] = []
@@ -99,23 +85,23 @@ class UnitMeasurer(WorkerPlugin):
         self._ending.set()
         self._end_idle()
 
-    def measure(self, key: str, unit: Unit) -> Measured:
+    def measure(self, key: str, unit: Unit) -> list[Finished]:
         """Measure a unit.
 
         Raises
         ------
         EngineError
-            If this worker has other versions, or cannot start a process.
+            If this worker has other versions or images, or cannot start a process.
         """
-        address = self._worker.address
         if self._different:
             raise EngineError(
-                f"the worker {address} has {self._different}; install the same versions on all "
-                "machines of the cluster"
+                f"the worker {self._worker.address} has {self._different}; install the "
+                "same versions on all machines of the cluster"
             )
-        with self._turn(), self._pool() as pool:
-            finished = list(pool.run([unit], _Reporter(self._worker, self, key)))
-        return Measured(finished, address, self._unreadable(finished))
+        with self._turn():
+            self._check_images(unit)
+            with self._pool() as pool:
+                return list(pool.run([unit], _Reporter(self._worker, self, key)))
 
     def check(self) -> None:
         """End what is under way when the run is over.
@@ -177,16 +163,31 @@ class UnitMeasurer(WorkerPlugin):
             while self._idle:
                 self._idle.pop().close()
 
-    def _unreadable(self, finished: Sequence[Finished]) -> dict[str, str]:
-        rows = [row for each in finished for row in each.rows if row["status"] == "error"]
-        names = {str(row[column]) for row in rows for column in ("image_1", "image_2")}
-        reasons = {}
-        for name in sorted(names):
+    def _check_images(self, unit: Unit) -> None:
+        """Make sure that the images of a unit are those that the run was planned for.
+
+        Raises
+        ------
+        EngineError
+        """
+        pairs = [self._context.dataset.pair(work.pair) for work in unit.work]
+        names = {name for pair in pairs for name in (pair.image_1, pair.image_2)}
+        for name in sorted(names - self._checked):
             try:
-                self._context.dataset.image(name).read()
+                same = (
+                    self._context.dataset.image(name).source.content_key() == self._image_keys[name]
+                )
             except ImageError as error:
-                reasons[name] = str(error)
-        return reasons
+                raise EngineError(
+                    f"the worker {self._worker.address} cannot read an image that the run has: "
+                    f"{error}; mount the folder of the images there under the same path"
+                ) from error
+            if not same:
+                raise EngineError(
+                    f"the worker {self._worker.address} has another image {name} than the run; "
+                    "mount the folder of the images there under the same path"
+                )
+            self._checked.add(name)
 
 
 class _Reporter:
@@ -220,7 +221,7 @@ class _Reporter:
         self._worker.log_event(self._measurer.name, report)
 
 
-def measure(name: str, key: str, unit: Unit) -> Measured:
+def measure(name: str, key: str, unit: Unit) -> list[Finished]:
     """The task: measure a unit of the run called `name` on the worker that this is called on."""
     measurer = get_worker().plugins.get(name)
     if not isinstance(measurer, UnitMeasurer):
