@@ -87,6 +87,17 @@ def test_rows_equal_those_of_the_local_engine(
     assert results.table()["machine"].to_list() == local.table()["machine"].to_list()
 
 
+def test_rows_of_long_units_come_pair_by_pair(
+    cluster: Cluster, views: Dataset, tmp_path: Path
+) -> None:
+    cluster.add_worker()
+    with connected(cluster.address) as client:
+        engine = DaskEngine(client, longest_seconds=0)
+        results = run(views, FEW, tmp_path / "dask", engine=engine)
+    local = run(views, FEW, tmp_path / "local", engine=InlineEngine())
+    assert_same_rows(rows_of(results.table()), rows_of(local.table()))
+
+
 def test_workers_that_die_and_one_that_comes_late(cluster: Cluster, tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(12))
     first = [cluster.add_worker() for _ in range(3)]
@@ -119,7 +130,7 @@ def test_an_interruption_keeps_what_was_finished_and_ends_processes(
         raise KeyboardInterrupt
 
     with connected(cluster.address) as client:
-        engine = DaskEngine(client)
+        engine = DaskEngine(client, longest_seconds=0)
         with pytest.raises(KeyboardInterrupt):
             run(dataset, MANY, tmp_path / "r", engine=engine, observer=During(interrupt))
         wait_until(lambda: not workers_of(str(tmp_path)))

@@ -20,7 +20,7 @@ from aerocues.evaluation.unit import Context, StageCall, Unit
 if TYPE_CHECKING:
     from distributed import Client, Future, KilledWorker
 
-    from aerocues.evaluation.dask_worker import Report, UnitMeasurer
+    from aerocues.evaluation.dask_worker import Measured, Report, UnitMeasurer
 
 POLL_SECONDS = 0.1
 SECONDS_BETWEEN_COUNTS = 2.0
@@ -30,6 +30,7 @@ RESULT_SECONDS = 10.0
 UNITS_PER_THREAD = 2
 FEWEST_UNITS = 8
 RETRIES = 2
+LONGEST_SECONDS = 30.0
 AGAIN = "run the same command again: what is finished is kept"
 
 
@@ -50,12 +51,16 @@ class DaskEngine:
     resource : str or None
         Only workers that were started with this resource (``dask worker --resources NAME=1``)
         get units: one kind of machine out of several.
+    longest_seconds : float
+        A worker sends the rows of a unit after so long, or when the pair that it is at is
+        finished; the rest of the unit goes to whichever worker is free.
     """
 
     client: Client
     timeout: float = DEFAULT_TIMEOUT
     memory_limit_mb: int | None = None
     resource: str | None = None
+    longest_seconds: float = LONGEST_SECONDS
 
     @property
     def threads(self) -> int:
@@ -84,7 +89,9 @@ class DaskEngine:
         from aerocues.evaluation.dask_worker import UnitMeasurer
 
         name = f"aerocues-{uuid.uuid4().hex[:12]}"
-        measurer = UnitMeasurer(name, context, self.timeout, self.memory_limit_mb)
+        measurer = UnitMeasurer(
+            name, context, self.timeout, self.memory_limit_mb, self.longest_seconds
+        )
         dispatch = _Dispatch(self, name, context, units)
         try:
             self._prepare_workers(measurer)
@@ -141,7 +148,7 @@ class _Dispatch:
         self._name = name
         self._context = context
         self._queue = deque(units)
-        self._given: dict[str, tuple[Future[list[Finished]], Unit]] = {}
+        self._given: dict[str, tuple[Future[Measured], Unit]] = {}
         self._heard: dict[str, _Heard] = {}
         self._numbers: dict[str, int] = {}
         self._count = 0
@@ -151,12 +158,15 @@ class _Dispatch:
     def hear(self, event: tuple[float, Report]) -> None:
         """Take the report of a worker."""
         report = event[1]
+        if report["key"] not in self._given:
+            return  # it was on its way when the unit's rows came
         self._numbers.setdefault(report["worker"], len(self._numbers))
         self._heard[report["key"]] = _Heard(report, time.monotonic())
 
     def run(self, watch: Watch) -> Iterator[Finished]:
         """Run all units."""
         while self._queue or self._given:
+            self._require_scheduler()
             self._fill()
             watch(self._activities())
             ended = [key for key, (future, _) in self._given.items() if future.done()]
@@ -170,13 +180,18 @@ class _Dispatch:
         self._client.cancel([future for future, _ in self._given.values()])
         self._given.clear()
 
+    def _require_scheduler(self) -> None:
+        if self._client.status != "running":
+            raise EngineError(f"the Dask scheduler is gone; start it and {AGAIN}")
+
     def _fill(self) -> None:
         from aerocues.evaluation.dask_worker import measure
 
         now = time.monotonic()
         if now - self._counted > SECONDS_BETWEEN_COUNTS:
             self._counted = now
-            self._room = max(UNITS_PER_THREAD * self._engine.threads, FEWEST_UNITS)
+            with contextlib.suppress(OSError):  # a scheduler that is gone is told elsewhere
+                self._room = max(UNITS_PER_THREAD * self._engine.threads, FEWEST_UNITS)
         while self._queue and len(self._given) < self._room:
             unit = self._queue.popleft()
             key = f"{unit.detector}-{self._count}-{self._name}"
@@ -212,20 +227,21 @@ class _Dispatch:
 
         future, unit = self._given[key]
         try:
-            finished = future.result(timeout=RESULT_SECONDS)
+            measured = future.result(timeout=RESULT_SECONDS)
         except TimeoutError:
             return  # it is measured once more
-        except CancelledError as error:
-            if self._client.status != "running":
-                raise EngineError(f"the Dask scheduler is gone; start it and {AGAIN}") from error
-            self._queue.appendleft(unit)
+        except CancelledError:
+            self._require_scheduler()
+            self._queue.appendleft(unit)  # somebody restarted the workers
         except KilledWorker as error:
             given_up, remaining = self._killed(key, unit, error)
             self._queue.extendleft(reversed(remaining))
             if given_up is not None:
                 yield given_up
         else:
-            yield from finished
+            if measured.left is not None:
+                self._queue.appendleft(measured.left)
+            yield from measured.finished
         del self._given[key]
         self._heard.pop(key, None)
 

@@ -12,7 +12,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TypedDict
 
@@ -20,7 +20,7 @@ import psutil
 from distributed import Worker, WorkerPlugin, get_worker
 
 from aerocues.errors import EngineError, ImageError
-from aerocues.evaluation.engine import Activity, Finished
+from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.versions import machine_name, software_versions
 from aerocues.evaluation.worker_pool import WorkerPool
@@ -44,6 +44,14 @@ class Report(TypedDict):
     seconds: float
 
 
+@dataclass(frozen=True)
+class Measured:
+    """The pairs of a unit that are finished, and what is left of it."""
+
+    finished: list[Finished]
+    left: Unit | None
+
+
 class UnitMeasurer(WorkerPlugin):
     """Is with each worker of a cluster, also with those that come late, as long as a run lasts.
 
@@ -56,15 +64,23 @@ class UnitMeasurer(WorkerPlugin):
         See `LocalEngine`.
     memory_limit_mb : int or None
         Memory of one process; a share of the Dask worker's by default.
+    longest_seconds : float
+        No further pair of a unit is begun then; what is left of it goes back to the run.
     """
 
     def __init__(
-        self, name: str, context: Context, timeout: float, memory_limit_mb: int | None
+        self,
+        name: str,
+        context: Context,
+        timeout: float,
+        memory_limit_mb: int | None,
+        longest_seconds: float,
     ) -> None:
         self.name = name
         self._context = context
         self._timeout = timeout
         self._memory_limit_mb = memory_limit_mb
+        self._longest_seconds = longest_seconds
         self._versions = software_versions()
         self._image_keys = {
             image.name: image.source.content_key() for image in context.dataset.images
@@ -85,8 +101,8 @@ class UnitMeasurer(WorkerPlugin):
         self._ending.set()
         self._end_idle()
 
-    def measure(self, key: str, unit: Unit) -> list[Finished]:
-        """Measure a unit.
+    def measure(self, key: str, unit: Unit) -> Measured:
+        """Measure a unit, or as many of its pairs as may be begun at a time.
 
         Raises
         ------
@@ -101,7 +117,16 @@ class UnitMeasurer(WorkerPlugin):
         with self._turn():
             self._check_images(unit)
             with self._pool() as pool:
-                return list(pool.run([unit], _Reporter(self._worker, self, key)))
+                return self._measure_pairs(pool, unit, _Reporter(self._worker, self, key))
+
+    def _measure_pairs(self, pool: WorkerPool, unit: Unit, watch: Watch) -> Measured:
+        finished: list[Finished] = []
+        end = time.monotonic() + self._longest_seconds
+        while True:
+            pair, unit = unit.parts(1)  # the process keeps the features for the next pair
+            finished += pool.run([pair], watch)
+            if not unit.work or time.monotonic() >= end:
+                return Measured(finished, unit if unit.work else None)
 
     def check(self) -> None:
         """End what is under way when the run is over.
@@ -221,7 +246,7 @@ class _Reporter:
         self._worker.log_event(self._measurer.name, report)
 
 
-def measure(name: str, key: str, unit: Unit) -> list[Finished]:
+def measure(name: str, key: str, unit: Unit) -> Measured:
     """The task: measure a unit of the run called `name` on the worker that this is called on."""
     measurer = get_worker().plugins.get(name)
     if not isinstance(measurer, UnitMeasurer):
