@@ -25,9 +25,13 @@ OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
 OLDEST_TOOLS := pytest|pytest-timeout|pytest-xdist|hypothesis|pillow|psutil|numba|llvmlite
 OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
 
+LIGHT_VENV := .venv-light
+LIGHT_INSTALLED := $(LIGHT_VENV)/.installed
+LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv lint bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -66,6 +70,16 @@ $(OLDEST_INSTALLED): $(INSTALLED)
 	@echo "$(CURDIR)/src" > "$$($(OLDEST_VENV)/bin/python -c 'import site; print(site.getsitepackages()[0])')/aerocues.pth"
 	@touch $@
 
+test-light: $(LIGHT_INSTALLED) ## the light install for boards: what it can, and that it says what it cannot
+	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir $(LIGHT_VENV)/wheel .
+	$(LIGHT_VENV)/bin/python -m pip install --quiet --no-deps --no-index --force-reinstall $(LIGHT_VENV)/wheel/*.whl
+	AEROCUES_LIGHT_PYTHON=$(CURDIR)/$(LIGHT_VENV)/bin/python $(BIN)/pytest tests/cli/test_light_install.py $(PYTEST_ARGUMENTS)
+
+$(LIGHT_INSTALLED): requirements-light.lock $(INSTALLED)
+	$(BIN)/python -m venv --clear $(LIGHT_VENV)
+	$(LIGHT_VENV)/bin/python -m pip install --quiet --no-deps --require-hashes -r requirements-light.lock
+	@touch $@
+
 lint: setup ## style, types and the direction of imports
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -78,10 +92,10 @@ bench: setup ## the benchmarks of the framework itself
 tables: setup ## bring the tables of the guide up to date with the source
 	$(BIN)/python docs/tables.py
 
-lock: setup ## pin the newest allowed versions in requirements.lock (needs uv)
-	uv pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 \
-		--generate-hashes --no-emit-index-url --no-header --upgrade --output-file requirements.lock
+lock: setup ## pin the newest allowed versions in requirements.lock and requirements-light.lock (needs uv)
+	$(LOCK) pyproject.toml --all-extras --group dev --upgrade --output-file requirements.lock
+	$(LOCK) --group light --constraint requirements.lock --output-file requirements-light.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) .coverage .coverage.* build dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

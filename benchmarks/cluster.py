@@ -63,7 +63,9 @@ def measure(dataset: Dataset, workers: int, engine: Engine | None) -> float:
     with tempfile.TemporaryDirectory() as folder:
         limits = Limits(workers=None if engine else workers)
         started = time.perf_counter()
-        aerocues.run(dataset, COMBINATIONS, f"{folder}/results", limits=limits, engine=engine)
+        place = f"{folder}/results"
+        options = {"timing": "shared", "limits": limits, "engine": engine}
+        aerocues.run(dataset, COMBINATIONS, place, **options)
         return time.perf_counter() - started
 
 

@@ -34,7 +34,7 @@ import aerocues
 started = time.perf_counter()
 dataset = aerocues.open_dataset({dataset!r}, limit={limit})
 limits = aerocues.Limits(workers={workers})
-results = aerocues.run(dataset, {combinations!r}, {output!r}, limits=limits)
+results = aerocues.run(dataset, {combinations!r}, {output!r}, limits=limits, timing="shared")
 wall = time.perf_counter() - started
 cpu = sum(
     usage.ru_utime + usage.ru_stime

@@ -176,7 +176,7 @@ def ground_truth() -> Iterator[tuple[str, ...]]:
 
 def times() -> Iterator[tuple[str, ...]]:
     """Columns of stage times and of what a stage takes."""
-    return _columns((*schema.TIMES, *schema.RESOURCES))
+    return _columns((*schema.TIMES, *schema.HOW_TIMED, *schema.RESOURCES))
 
 
 def names() -> Iterator[tuple[str, ...]]:

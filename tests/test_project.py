@@ -54,9 +54,14 @@ def project(repository: Path) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def pins(repository: Path) -> dict[str, list[str]]:
-    """Lines of requirements.lock by package: pin and hashes of each pinned version."""
+    """What requirements.lock pins."""
+    return pins_in(repository / "requirements.lock")
+
+
+def pins_in(lock: Path) -> dict[str, list[str]]:
+    """Lines of a lock file by package: pin and hashes of each pinned version."""
     pins: dict[str, list[str]] = {}
-    for entry in re.split(r"\n(?=\S)", (repository / "requirements.lock").read_text()):
+    for entry in re.split(r"\n(?=\S)", lock.read_text()):
         found = re.match(r"([A-Za-z0-9._-]+)==", entry)
         assert found or entry.startswith("#"), f"not a pin: {entry[:80]}"
         if found:
@@ -90,6 +95,20 @@ def test_the_lock_pins_every_dependency(
     ]
     names = {re.split(r"[^A-Za-z0-9._-]", requirement)[0] for requirement in requirements}
     assert names - pins.keys() == set()
+
+
+def test_the_light_install_is_a_part_of_the_whole(
+    repository: Path, project: dict[str, Any], pins: dict[str, list[str]]
+) -> None:
+    light = project["dependency-groups"]["light"]
+    assert set(light) < set(project["project"]["dependencies"])
+    pinned = pins_in(repository / "requirements-light.lock")
+    assert {re.split(r"[^A-Za-z0-9._-]", requirement)[0] for requirement in light} <= set(pinned)
+    assert {"numba", "plotly", "pyarrow", "pycolmap"} & set(pinned) == set()
+    for name, entries in pinned.items():
+        versions = {entry.split()[0] for entry in entries}
+        assert versions == {entry.split()[0] for entry in pins[name]}
+        assert [entry for entry in entries if "--hash=sha256:" not in entry] == []
 
 
 def test_versions_agree(repository: Path, project: dict[str, Any]) -> None:

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-import numba
+from aerocues.errors import MethodUnavailableError
+
+try:
+    import numba
+except ImportError as error:  # missing, as in the light install, or at odds with another package
+    raise MethodUnavailableError(
+        f"this needs code that numba compiles, and numba cannot be loaded ({error}); "
+        "install it: pip install numba"
+    ) from error
+
+__all__ = ["compiled", "numba"]
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 

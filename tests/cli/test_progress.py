@@ -70,7 +70,7 @@ def test_spans_of_time_are_spoken(seconds: float, text: str) -> None:
 def test_rows_that_were_there_count_and_cost_tells_the_time_left() -> None:
     clock = Clock()
     tally = Tally(clock=clock)
-    tally.planned(PLAN)
+    tally.planned(PLAN, "shared")
     assert tally.seconds_left() is None
     assert tally.progress() == "60 of 100 rows (60 %), 0 s so far"
     clock.now += 60
@@ -89,7 +89,7 @@ def test_rows_that_were_there_count_and_cost_tells_the_time_left() -> None:
 def test_a_plan_without_rows_is_done() -> None:
     tally = Tally()
     assert tally.share == 1.0
-    tally.planned(plan_of(rows=0))
+    tally.planned(plan_of(rows=0), "shared")
     assert tally.share == 1.0
 
 
@@ -97,7 +97,7 @@ def test_plain_lines_come_at_most_every_ten_seconds(capsys: pytest.CaptureFixtur
     clock = Clock()
     lines = PlainLines(clock=clock)
     small = [unit(1, 1.0) for _ in range(100)]
-    lines.planned(plan_of(*small, rows=100))
+    lines.planned(plan_of(*small, rows=100), "shared")
     for one in small:
         clock.now += 0.5
         lines.finished(done(one))
@@ -113,7 +113,7 @@ def test_plain_lines_come_each_minute_even_where_nothing_moves(
 ) -> None:
     clock = Clock()
     lines = PlainLines(clock=clock)
-    lines.planned(plan_of(DEAR, rows=20))
+    lines.planned(plan_of(DEAR, rows=20), "shared")
     for _ in range(180):
         clock.now += 1
         lines.working([])
@@ -133,7 +133,7 @@ def test_the_live_display_shows_workers_rows_and_failures() -> None:
 
     display.hashing(3, 7)
     assert shown() == ["reading images: 3 of 7"]
-    display.planned(PLAN)
+    display.planned(PLAN, "shared")
     clock.now += 60
     display.finished(done(DEAR, "timeout"))
     call = StageCall("match", 0, "1.png and " + "long/" * 30, "ORB", "ORB", "ORB-ORB-HAM-BF")
@@ -153,11 +153,11 @@ def test_what_images_rule_out_is_told_by_reason_even_where_nothing_is_left(
     from rich.console import Console
     from rich.live import Live
 
-    PlainLines().planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS))
+    PlainLines().planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS), "shared")
     assert capsys.readouterr().err.splitlines()[:2] == LEFT_OUT
     screen = io.StringIO()
     console = Console(file=screen, width=40, force_terminal=True, color_system=None)
     with Live(console=console, auto_refresh=False, transient=True) as live:
-        LiveDisplay(live=live).planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS))
+        LiveDisplay(live=live).planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS), "shared")
     for line in LEFT_OUT:
         assert line in screen.getvalue()

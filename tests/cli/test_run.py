@@ -22,10 +22,10 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert first.code == 0
     assert re.search(r"1 ORB-ORB-HAM-BF +[01]\.\d{3} .* 100 % +[01]\.\d{3} +\d+ ", first.out)
     assert "photos: 1 combination on 2 pairs" in first.out
-    assert re.search(r"rows +2: ok 2", first.out)
+    assert re.search(r"rows +2: ok 2\ntimes +exclusive 2( \(\d disturbed\))?\n", first.out)
     assert f"aerocues status '{output}'" in first.out
     assert f"aerocues score '{output}'" in first.out
-    assert "2 rows to measure in 1 unit of work" in first.err
+    assert "2 rows to time, one call at a time, in 1 unit of work" in first.err
     assert "measured 2 rows" in first.err
 
     second = call(*words, "--limit", 2)
@@ -33,7 +33,7 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert second.out == first.out
 
     more = call(*words)
-    assert "1 row to measure in 1 unit of work; 2 rows are there already" in more.err
+    assert "1 row to time, one call at a time, in 1 unit of work; 2 rows are there" in more.err
     assert "on 3 pairs" in more.out
 
 
@@ -153,7 +153,7 @@ def test_a_dry_run_tells_what_gray_images_rule_out(
         (("--sequences", "no*"), "no sequence is called no*"),
         (("--timing", "late"), "'late' is not one of"),
         (("--workers", "0"), "--workers"),
-        (("--timing", "exclusive", "--workers", "2"), "--timing shared"),
+        (("--timing-pairs", "-1"), "--timing-pairs"),
         (("--timeout", "0"), "must be positive"),
         (("--limit", "none"), "--limit"),
     ],

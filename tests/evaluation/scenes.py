@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, Geometry, Image, Pair
 from aerocues.datasets.decoding import FileSource
-from aerocues.evaluation.schema import COLUMNS
+from aerocues.evaluation.schema import COLUMNS, HOW_TIMED
 from tests.methods.pictures import textured
 
 if TYPE_CHECKING:
@@ -24,7 +24,11 @@ Rows = dict[tuple[object, ...], dict[str, object]]
 
 NAMES = ("dataset", "pair", "image_1", "image_2", "detector", "descriptor", "norm", "matcher")
 # What differs from run to run: times, what follows from them, and where they were taken.
-CHANGING = frozenset(c.name for c in COLUMNS if c.unit in ("s", "MB")) | {"timing", "machine"}
+CHANGING = (
+    frozenset(c.name for c in COLUMNS if c.unit in ("s", "MB"))
+    | {column.name for column in HOW_TIMED}
+    | {"timing", "machine"}
+)
 
 
 def write_dataset(

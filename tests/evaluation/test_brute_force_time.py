@@ -37,7 +37,7 @@ def test_estimated_times_leave_everything_else_as_it_is(
 def test_estimated_times_do_not_stand_for_measured_ones(views: Dataset, tmp_path: Path) -> None:
     engine, folder = InlineEngine(), tmp_path / "r"
     run(views, "ORB-ORB-HAM-BF", folder, engine=engine, timing="estimated")
-    again = run(views, "ORB-ORB-HAM-BF", folder, engine=engine)
+    again = run(views, "ORB-ORB-HAM-BF", folder, engine=engine, timing="shared")
     assert set(again.table()["timing"]) == {"shared"}
     back = run(views, "ORB-ORB-HAM-BF", folder, engine=engine, timing="estimated")
     assert set(back.table()["timing"]) == {"shared"}
@@ -59,7 +59,7 @@ def test_all_is_timed_where_it_is_little_and_a_part_is_scaled(
     whole = stage.read(stage.call(first, second))
     asked: list[int] = []
     monkeypatch.setattr(type(stage), "call", _counting(type(stage).call, asked))
-    sampled = SampledBruteForce(stage, "HAM", Clock(memory=False))
+    sampled = SampledBruteForce(stage, "HAM", Clock())
     assert sampled.match(first, second)[0].indices.tolist() == whole.indices.tolist()
     monkeypatch.setattr(brute_force_time, "TIMED_PAIRS", 400 * 30)
     matches, time = sampled.match(first, second)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -16,12 +17,14 @@ pytest.importorskip("distributed")
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import EngineError
 from aerocues.evaluation import dask_worker
+from aerocues.evaluation import run as running
 from aerocues.evaluation.dask_engine import DaskEngine
 from aerocues.evaluation.dask_scheduler import connected
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.results import Results
-from aerocues.evaluation.run import Limits, Observer, run
+from aerocues.evaluation.run import Limits, Observer
 from aerocues.evaluation.store import Store
 from aerocues.evaluation.versions import software_versions
 from tests.evaluation.cluster import Cluster
@@ -30,6 +33,8 @@ from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
 from tests.methods.distribution import write_distribution
 
+# One pass over all pairs, on all workers at once.
+run = functools.partial(running.run, timing="shared")
 FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
 MANY = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,BRISK-BRISK-HAM-BF"
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
@@ -223,7 +228,7 @@ def test_a_worker_without_the_images_is_an_error(
     cluster.add_worker()
 
     class Changing(Observer):
-        def planned(self, plan: Plan) -> None:
+        def planned(self, plan: Plan, timing: Timing) -> None:
             change(tmp_path / "images" / "view_1.png")
 
     with (
@@ -254,7 +259,8 @@ def test_exclusive_times_of_one_machine_are_taken_one_at_a_time(
     with connected(cluster.address) as client:
         client.wait_for_workers(2)
         engine = DaskEngine(client)
-        table = run(views, MANY, tmp_path / "r", timing="exclusive", engine=engine).table()
+        combinations = f"{FEW},KAZE-KAZE-L2-BF,BRISK-BRISK-HAM-BF,AKAZE-AKAZE-HAM-BF"
+        table = run(views, combinations, tmp_path / "r", timing="exclusive", engine=engine).table()
     assert set(table["timing"]) == {"exclusive"}
     assert table["peak_memory_mb"].null_count() < len(table)
     # Each detector was a unit: the times at which its rows were begun lie together.

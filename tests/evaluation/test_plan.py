@@ -187,3 +187,19 @@ def test_progress_counts_every_image(views: Dataset) -> None:
     told: list[tuple[int, int]] = []
     make_plan(context_of(views), SOME, lambda key: False, lambda *step: told.append(step))
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_descriptors_that_cost_far_more_than_detecting_are_units_of_their_own(
+    views: Dataset,
+) -> None:
+    combinations = select(METHODS, "FAST-VGG-*,FAST-BOOST-HAM-BF,FAST-ORB-HAM-BF,FAST-BRIEF-*")
+    plan = plan_of(context_of(views), combinations)
+    together = [
+        {combination.descriptor for work in unit.work for combination in work.combinations}
+        for unit in plan.units
+    ]
+    assert together == [{"VGG"}, {"BOOST"}, {"ORB", "BRIEF"}]
+    assert set(keys(plan).values()) == {1}
+    # HL takes a sixth of what VGG takes on its keypoints: detecting twice would not pay.
+    plan = plan_of(context_of(views), select(METHODS, "HL-VGG-L2-BF,HL-ORB-HAM-BF"))
+    assert len(plan.units) == 1

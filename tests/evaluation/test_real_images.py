@@ -66,7 +66,7 @@ def shares(
 ) -> tuple[float, float]:
     """Share of matches that are right by the truth, and of those that are inliers."""
     right = float((np.linalg.norm(transfer(first, truth) - second, axis=1) <= 3).mean())
-    verifier = Verifier(MeasurementProtocol(chance=None), "homography", Clock(memory=False))
+    verifier = Verifier(MeasurementProtocol(chance=None), "homography", Clock())
     model = verifier.verify(first, second, np.arange(len(first))).model
     return right, model.count / len(first)
 

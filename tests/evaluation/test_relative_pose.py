@@ -71,9 +71,7 @@ def test_a_nearly_flat_scene_has_one_pose() -> None:
     points_2 += generator.normal(0, 0.5, points_2.shape).astype(np.float32)
     points_2[:300] = generator.uniform((0, 0), (640, 480), (300, 2))
     protocol = MeasurementProtocol()
-    parameters, guided = Verifier(protocol, "epipolar", Clock(memory=False)).pose_parameters(
-        "uniform"
-    )
+    parameters, guided = Verifier(protocol, "epipolar", Clock()).pose_parameters("uniform")
     assert not guided
     found = estimate_pose(points_1, points_2, (FIRST, FIRST), parameters)
     assert pose_error(found, true_pose(first, second)) < 2

@@ -13,10 +13,11 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.run import Limits, Observer, plan_run, run
 from aerocues.evaluation.schema import COLUMNS
 from aerocues.methods.presets import Preset
-from aerocues.methods.strongest import KeypointLimit
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import (
     assert_same_rows,
@@ -39,7 +40,7 @@ class Counting(Observer):
         self.rows = 0
         self.plan: Plan | None = None
 
-    def planned(self, plan: Plan) -> None:
+    def planned(self, plan: Plan, timing: Timing) -> None:
         self.plan = plan
 
     def finished(self, finished: Finished) -> None:
@@ -49,7 +50,7 @@ class Counting(Observer):
 def test_views_of_a_plane_are_measured_with_the_truth(tmp_path: Path) -> None:
     truth = shift_of_strip()
     dataset = write_dataset(tmp_path / "images", strip(3), homographies=[truth, truth])
-    results = run(dataset, FEW, tmp_path / "results", engine=InlineEngine())
+    results = run(dataset, FEW, tmp_path / "results", engine=InlineEngine(), timing="shared")
     table = results.table()
     assert len(table) == 6
     for row in table.to_dicts():
@@ -81,7 +82,7 @@ def test_the_second_run_measures_nothing(views: Dataset, tmp_path: Path) -> None
 
 def test_more_combinations_measure_only_the_new(views: Dataset, tmp_path: Path) -> None:
     run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())
-    plan = plan_run(views, FEW, tmp_path / "r")
+    ((_, plan),) = plan_run(views, FEW, tmp_path / "r")
     assert (plan.rows_planned, plan.rows_present, plan.rows_left) == (9, 3, 6)
     counting = Counting()
     results = run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
@@ -188,21 +189,18 @@ def test_the_thesis_preset_does_not_ask_for_chance(tmp_path: Path) -> None:
 
 
 def test_exclusive_times_say_so_and_know_the_memory(views: Dataset, tmp_path: Path) -> None:
-    shared = run(views, FEW, tmp_path / "r", engine=InlineEngine()).table()
+    shared = run(views, FEW, tmp_path / "r", engine=InlineEngine(), timing="shared").table()
+    assert shared["timing_repeats"].null_count() == 9
     exclusive = run(views, FEW, tmp_path / "r", timing="exclusive").table()
     assert exclusive["timing"].to_list() == ["exclusive"] * 9
     assert_same_rows(rows_of(exclusive), rows_of(shared))
+    assert min(exclusive["timing_repeats"].to_list()) >= 1
     if Path("/proc/self/clear_refs").exists():
         assert exclusive["peak_memory_mb"].null_count() == 0
         assert max(exclusive["peak_memory_mb"].to_list()) > 0
     counting = Counting()
     run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
     assert counting.rows == 0
-
-
-def test_exclusive_timing_takes_one_worker(views: Dataset, tmp_path: Path) -> None:
-    with pytest.raises(SelectionError, match="exclusive timing"):
-        run(views, FEW, tmp_path / "r", timing="exclusive", limits=Limits(workers=2))
 
 
 @pytest.mark.parametrize("limits", [Limits(workers=-1), Limits(timeout=0), Limits(timeout=-3)])
@@ -267,8 +265,9 @@ def test_a_limit_and_a_preset_are_part_of_a_measurement(tmp_path: Path) -> None:
         assert (row["max_keypoints"], row["keypoint_choice"]) == (200, "spread")
         assert row["inlier_threshold"] == 3.0
     assert not set(table["row_key"]) & {str(row["row_key"]) for row in free.values()}
-    assert not plan_run(dataset, names, results, limit=limit).units
-    assert not plan_run(dataset, names, results).units
+    for kept in (limit, ALL_KEYPOINTS):
+        ((_, plan),) = plan_run(dataset, names, results, limit=kept)
+        assert not plan.units
 
     strict = Preset("strict", "strict", True, thresholds={"ORB-ORB": 0.5})
     table = run(dataset, names, results, preset=strict, engine=engine).table()

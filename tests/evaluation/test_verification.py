@@ -67,7 +67,7 @@ def verify(
 ) -> Verdict:
     """Verify matches of which those in front have the smallest descriptor distance."""
     protocol = MeasurementProtocol(seed=seed, verification=SETTINGS, chance=chance)
-    verifier = Verifier(protocol, "epipolar", Clock(memory=False))
+    verifier = Verifier(protocol, "epipolar", Clock())
     return verifier.verify(points_1, points_2, np.arange(len(points_1)))
 
 
@@ -120,7 +120,7 @@ def test_settings_reach_opencv() -> None:
     counts = []
     for threshold in (0.5, 1.5, 3.0):
         protocol = MeasurementProtocol(verification=Verification(threshold), chance=None)
-        verifier = Verifier(protocol, "epipolar", Clock(memory=False))
+        verifier = Verifier(protocol, "epipolar", Clock())
         counts.append(verifier.verify(first, second, np.arange(200)).model.count)
     assert counts[0] < counts[1] < counts[2]
 
@@ -236,7 +236,7 @@ def test_guided_sampling_finds_few_true_matches_that_come_first() -> None:
     assert verdict.model.inliers[:30].mean() > 0.8
     shuffled = np.random.default_rng(0).permutation(180)
     protocol = MeasurementProtocol(verification=SETTINGS)
-    verifier = Verifier(protocol, "epipolar", Clock(memory=False))
+    verifier = Verifier(protocol, "epipolar", Clock())
     mixed = verifier.verify(first[shuffled], second[shuffled], np.argsort(shuffled))
     assert mixed.passed
     # Inliers are told in the order of the matches, not in that of their distances.
@@ -258,7 +258,7 @@ def views_of_a_plane(
 def test_few_true_matches_of_a_plane_are_found_by_its_homography() -> None:
     """One in forty, among the nearest 80 descriptors: mostly too few for a fundamental matrix."""
     protocol = MeasurementProtocol(verification=SETTINGS)
-    verifier = Verifier(protocol, "homography", Clock(memory=False))
+    verifier = Verifier(protocol, "homography", Clock())
     found_by = []
     for seed in range(5):
         first, second, homography = views_of_a_plane(24, 936, seed)

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any
 from aerocues.cli.console import count, standard_output
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from aerocues.evaluation.plan import Plan
+    from aerocues.evaluation.protocol import Timing
 
 SELECTION = ("combinations", "detectors", "descriptors", "everything")
 LONGEST_LIST = 10
@@ -25,26 +28,34 @@ def print_plan(arguments: dict[str, Any]) -> None:
     patterns, detectors, descriptors, everything = (arguments[name] for name in SELECTION)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(methods, patterns, **kept, everything=everything)
-    plan = plan_run(**arguments)
+    turns = plan_run(**arguments)
+    plan = turns[0][1]
     asked = named(methods, patterns, **kept)
     left_out = count_left_out(asked, frozenset(chosen), methods)
     dataset = arguments["dataset"]
     images, pairs = count(len(dataset.images), "image"), count(len(dataset.pairs), "pair")
-    units = count(len(plan.units), "unit")
-    seconds = sum(unit.cost for unit in plan.units)
+    seconds = sum(unit.cost for _, each in turns for unit in each.units)
     lines = [
         f"dataset       {dataset.name}: {images}, {pairs}",
         f"combinations  {len(chosen):,} of the {len(asked):,} named",
         *(f"              {number:>5,} left out: {cause}" for cause, number in left_out.items()),
         f"rows          {plan.rows_planned:,}, of which {plan.rows_present:,} are there already",
         *_ruled_out(plan),
-        f"work          {count(plan.rows_left, 'row')} in {units} (a detector on a few pairs)",
+        *_work(turns),
         f"CPU time      roughly {spoken_seconds(seconds)} at 1000 x 600 pixels",
         "Nothing was measured or written.",
     ]
     console = standard_output()
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
+
+
+def _work(turns: Sequence[tuple[Timing, Plan]]) -> Iterator[str]:
+    """What is left to do, a line a pass."""
+    for timing, plan in turns:
+        rows, units = count(plan.rows_left, "row"), count(len(plan.units), "unit")
+        head = "timed alone" if timing == "exclusive" else "work"
+        yield f"{head:12s}  {rows} in {units} (a detector on a few pairs)"
 
 
 def _ruled_out(plan: Plan) -> list[str]:

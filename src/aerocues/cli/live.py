@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.protocol import Timing
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -35,9 +36,10 @@ class LiveDisplay(Tally):
         self._hashing = f"reading images: {done:,} of {total:,}"
         self._draw(at_once=done == total)
 
-    def planned(self, plan: Plan) -> None:
-        super().planned(plan)
-        if self.live:
+    def planned(self, plan: Plan, timing: Timing) -> None:
+        first = self.plan is None
+        super().planned(plan, timing)
+        if self.live and first:
             for line in left_out(plan):  # stays above the display
                 self.live.console.print(line, soft_wrap=True, markup=False)
         self._draw(at_once=True)

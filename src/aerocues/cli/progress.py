@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from aerocues.cli.console import count
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Exclusion, Plan
+from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.run import Observer
 
 SECONDS_BETWEEN_LINES = 10.0
@@ -42,19 +43,27 @@ def left_out(plan: Plan) -> list[str]:
 
 @dataclass
 class Tally(Observer):
-    """What has been done so far; `clock` gives seconds."""
+    """What has been done so far in a pass; `clock` gives seconds."""
 
     clock: Callable[[], float] = time.monotonic
     plan: Plan | None = None
     rows_measured: int = 0
     statuses: Counter[str] = field(default_factory=Counter)
+    timing: Timing = "shared"
+    _started: float = 0.0
+    _rows_before: int = 0
     _cost_total: float = 0.0
     _cost_done: float = 0.0
     _began: float = 0.0
     _latest: float = 0.0
 
-    def planned(self, plan: Plan) -> None:
-        self.plan = plan
+    def planned(self, plan: Plan, timing: Timing) -> None:
+        if self.plan is None:
+            self._started = self.clock()
+        self._rows_before += self.rows_measured
+        self.rows_measured, self._cost_done = 0, 0.0
+        self.statuses.clear()
+        self.plan, self.timing = plan, timing
         self._cost_total = sum(unit.cost for unit in plan.units)
         self._began = self._latest = self.clock()
 
@@ -67,6 +76,16 @@ class Tally(Observer):
     @property
     def rows_stored(self) -> int:
         return self.rows_measured + (self.plan.rows_present if self.plan else 0)
+
+    @property
+    def rows_measured_in_all(self) -> int:
+        """Rows that all passes so far have measured; a timed one counts once more."""
+        return self._rows_before + self.rows_measured
+
+    @property
+    def elapsed_in_all(self) -> float:
+        """Seconds since the first pass began."""
+        return self.clock() - self._started
 
     @property
     def rows_planned(self) -> int:
@@ -96,7 +115,8 @@ class Tally(Observer):
         ending = f", {spoken_seconds(self.elapsed)} so far"
         ending += "" if left is None or left < 1 else f", about {spoken_seconds(left)} left"
         share = f"{int(100 * self.share)} %"
-        return f"{self.rows_stored:,} of {self.rows_planned:,} rows ({share}){ending}"
+        rows = "rows timed alone" if self.timing == "exclusive" else "rows"
+        return f"{self.rows_stored:,} of {self.rows_planned:,} {rows} ({share}){ending}"
 
     def outcomes(self) -> str:
         """``ok 1,100, chance 80, crashed 20``: of what this run measured, ok first."""
@@ -111,16 +131,18 @@ class PlainLines(Tally):
     _line_time: float = 0.0
     _line_share: float = 0.0
 
-    def planned(self, plan: Plan) -> None:
-        super().planned(plan)
+    def planned(self, plan: Plan, timing: Timing) -> None:
+        first = self.plan is None
+        super().planned(plan, timing)
         self._line_time, self._line_share = self.clock(), self.share
-        for line in left_out(plan):
+        for line in left_out(plan) if first else ():
             self._say(line)
         if not plan.rows_left:
             return
         present = f"; {plan.rows_present:,} rows are there already" if plan.rows_present else ""
         units = count(len(plan.units), "unit")
-        self._say(f"{count(plan.rows_left, 'row')} to measure in {units} of work{present}")
+        what = "to time, one call at a time," if timing == "exclusive" else "to measure"
+        self._say(f"{count(plan.rows_left, 'row')} {what} in {units} of work{present}")
 
     def working(self, activities: Sequence[Activity]) -> None:
         silent = self.clock() - self._line_time

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from aerocues.methods.strongest import KeypointLimit
 
 MEGABYTES = 1024
+# As `aerocues.evaluation.passes.TIMED_PAIRS`, which takes longer to import than help may take.
+TIMED_PAIRS = 5
 
 
 class Engine(StrEnum):
@@ -28,8 +30,8 @@ class Engine(StrEnum):
 class Timing(StrEnum):
     """Values of ``--timing``."""
 
-    SHARED = "shared"
     EXCLUSIVE = "exclusive"
+    SHARED = "shared"
     ESTIMATED = "estimated"
 
 
@@ -95,9 +97,12 @@ def run(
     timing: Annotated[
         Timing,
         typer.Option(
-            help="exclusive: one worker has the machine; estimated: brute force on a part."
+            help="exclusive: some pairs once more, alone; shared: one pass; estimated: and quicker."
         ),
-    ] = Timing.SHARED,
+    ] = Timing.EXCLUSIVE,
+    timing_pairs: Annotated[
+        int, typer.Option(min=0, metavar="K", help="Pairs that are timed alone; 0: all.")
+    ] = TIMED_PAIRS,
     seed: Annotated[
         int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
     ] = 0,
@@ -108,6 +113,10 @@ def run(
     memory_limit: Annotated[
         float | None,
         typer.Option(min=0.1, metavar="GB", help="Memory of a worker; its share of 80 %."),
+    ] = None,
+    features: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Keep features here, and take what is there."),
     ] = None,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Measure again what failed on this machine.")
@@ -148,6 +157,7 @@ def run(
             "preset": preset,
             "seed": seed,
             "timing": timing.value,
+            "timed_pairs": timing_pairs,
             "limit": _limit(max_keypoints, spread),
             "retry_failed": retry_failed,
         }
@@ -156,7 +166,8 @@ def run(
 
             print_plan(arguments)
             return
-        arguments["limits"] = limits = _limits(workers, timeout, memory_limit)
+        limits = _limits(workers, timeout, memory_limit)
+        arguments |= {"limits": limits, "features": features}
         with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
             results = _measure({**arguments, "engine": chosen})
         _print_results(results, images.name, top)
@@ -202,9 +213,9 @@ def _report_end(tally: Tally) -> None:
     from aerocues.cli.console import count
     from aerocues.cli.progress import spoken_seconds
 
-    if tally.rows_measured:
-        measured = count(tally.rows_measured, "row")
-        line = f"measured {measured} in {spoken_seconds(tally.elapsed)}"
+    if tally.rows_measured_in_all:
+        measured = count(tally.rows_measured_in_all, "row")
+        line = f"measured {measured} in {spoken_seconds(tally.elapsed_in_all)}"
     elif tally.rows_stored:
         line = f"nothing to measure: all {count(tally.rows_stored, 'row')} are there already"
     else:
@@ -217,6 +228,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
 
     from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
+    from aerocues.cli.status import times_of
 
     table = results.table().filter(pl.col("dataset") == dataset)
     if len(table):
@@ -228,6 +240,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     for line in (
         f"\nrows     {len(table):,}: {by_status}",
         *machine_lines(table),
+        f"times    {times_of(results.status())}",
         f"results  {results.folder}",
         f"next     aerocues status {folder}",
         f"         aerocues score {folder}",

@@ -13,7 +13,6 @@ import numpy as np
 
 from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.methods.arrays import Features, Matches
-from aerocues.methods.exact.matching import mutual_nearest
 from aerocues.methods.making import MatcherStage
 
 # About 0.03 s (bits) to 0.2 s (200 numbers) each: enough for a time that repeats within 5 %.
@@ -45,6 +44,9 @@ class SampledBruteForce:
         chosen = np.linspace(0, len(second) - 1, rows).round().astype(np.intp)
         part = Features(second.keypoints.take(chosen), second.descriptors[chosen])
         _, time = self.clock.time(lambda: self.brute_force.call(first, part))
+        # Loads numba, which other timings do without.
+        from aerocues.methods.exact.matching import mutual_nearest
+
         scale = len(second) / rows
         matches = mutual_nearest(first, second, self.norm)
         return matches, StageTime(time.wall * scale, time.cpu * scale)

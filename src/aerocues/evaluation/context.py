@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from aerocues.datasets.dataset import Dataset
+from aerocues.errors import MethodUnavailableError
 from aerocues.evaluation.plan import Plan, content_hash
 from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
 from aerocues.evaluation.unit import Context
 from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.methods.combination import Combination
+from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
@@ -24,7 +26,16 @@ def make_context(
     timing: Timing = "shared",
     limit: KeypointLimit = ALL_KEYPOINTS,
 ) -> Context:
-    """What all units of a measurement share; the parameters are those of `run.run`."""
+    """What all units of a measurement share; the parameters are those of `run.run`.
+
+    Raises
+    ------
+    MethodUnavailableError
+        If times are to be estimated and exact matching, which that needs, cannot be had.
+    """
+    problem = why_not_exact() if timing == "estimated" else None
+    if problem:
+        raise MethodUnavailableError(f"times cannot be estimated here: {problem}")
     protocol = MeasurementProtocol(
         seed=seed,
         timing=timing,

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 
 TYPICAL_MEGAPIXELS = 0.6
 FLANN_SECONDS_PER_KEYPOINT = 1e-4
+SHORTEST_UNIT = 1.0
+"""CPU seconds an image below which work is not worth dividing."""
 
 
 def match_seconds(methods: Methods, combination: Combination, keypoints: float) -> float:
@@ -23,6 +25,23 @@ def match_seconds(methods: Methods, combination: Combination, keypoints: float) 
     return keypoints * keypoints * (2.0 + per_column * row.columns) * 1e-9
 
 
+# A descriptor that takes so many times as long as detecting is worth detecting for once more.
+WORTH_DETECTING_AGAIN = 20.0
+
+
+def describe_seconds(methods: Methods, detector: str, descriptor: str) -> float:
+    """CPU seconds to describe the keypoints of a typical image."""
+    keypoints = methods.detectors[detector].keypoints_per_megapixel * TYPICAL_MEGAPIXELS
+    return methods.descriptors[descriptor].microseconds_per_keypoint * 1e-6 * keypoints
+
+
+def costly_descriptors(methods: Methods, detector: str, descriptors: Iterable[str]) -> list[str]:
+    """Those that are worth units of their own: VGG and BOOST on many keypoints."""
+    detecting = methods.detectors[detector].seconds_per_megapixel * TYPICAL_MEGAPIXELS
+    least = max(WORTH_DETECTING_AGAIN * detecting, SHORTEST_UNIT)
+    return [name for name in descriptors if describe_seconds(methods, detector, name) >= least]
+
+
 def estimate_pair_seconds(
     methods: Methods, detector: str, combinations: Sequence[Combination]
 ) -> float:
@@ -30,9 +49,9 @@ def estimate_pair_seconds(
     row = methods.detectors[detector]
     keypoints = row.keypoints_per_megapixel * TYPICAL_MEGAPIXELS
     descriptors = {combination.descriptor for combination in combinations}
-    describing = sum(methods.descriptors[name].microseconds_per_keypoint for name in descriptors)
+    describing = sum(describe_seconds(methods, detector, name) for name in descriptors)
     return (
         row.seconds_per_megapixel * TYPICAL_MEGAPIXELS
-        + describing * 1e-6 * keypoints
+        + describing
         + sum(match_seconds(methods, combination, keypoints) for combination in combinations)
     )

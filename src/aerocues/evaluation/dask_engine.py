@@ -112,6 +112,8 @@ class DaskEngine:
                 f"the cluster lacks something that the run needs ({error}); install aerocues[dask] "
                 "and your plug-ins, at the versions that are here, on each of its machines"
             ) from error
+        except OSError as error:
+            raise EngineError(f"a worker was lost as the run began ({error}); {AGAIN}") from error
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,12 @@ class UnitMeasurer(WorkerPlugin):
 
     def setup(self, worker: Worker) -> None:
         self._worker = worker
-        self._context = replace(self._context, machine=machine_name())
+        folder = self._context.features
+        self._context = replace(
+            self._context,
+            machine=machine_name(),
+            features=folder if folder and folder.is_dir() else None,  # it may not be shared
+        )
         self._memory = self._memory_limit_mb or _memory_of(worker)
         self._different = _different_versions(self._versions)
         self._checked: set[str] = set()
@@ -271,7 +276,7 @@ def _different_versions(wanted: Mapping[str, str]) -> str:
     """
     here = software_versions()
     return " and ".join(
-        f"{name} {here[name]}, the run {wanted[name]}"
+        f"{name} {here.get(name)}, the run {wanted.get(name)}"
         for name in SAME_VERSIONS
-        if here[name] != wanted[name]
+        if here.get(name) != wanted.get(name)
     )

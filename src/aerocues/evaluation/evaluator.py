@@ -7,9 +7,10 @@ from typing import TypeVar
 
 import cv2
 
-from aerocues.datasets.dataset import Pair
+from aerocues.datasets.dataset import Image, Pair
 from aerocues.evaluation.clock import Clock
 from aerocues.evaluation.feature_cache import FeatureCache
+from aerocues.evaluation.feature_folder import FeatureFolder
 from aerocues.evaluation.features import (
     Described,
     FeatureExtractor,
@@ -45,12 +46,14 @@ class Evaluator:
 
     def __init__(self, context: Context, announce: Announce) -> None:
         cv2.setNumThreads(1)
-        clock = Clock(memory=context.protocol.timing == "exclusive")
+        protocol = context.protocol
+        clock = Clock(protocol.seed, exclusive=protocol.timing == "exclusive")
         self._context = context
         self._announce = announce
-        self._extractor = FeatureExtractor(clock, context.protocol.seed, context.protocol.limit)
+        self._extractor = FeatureExtractor(clock, protocol.seed, protocol.limit)
         self._two_views = TwoViewMeasurement(context, clock, announce)
         self._cache = FeatureCache()
+        self._folder = FeatureFolder(context, context.features) if context.features else None
         self._detectors: dict[str, DetectorStage] = {}
         self._descriptors: dict[str, DescriptorStage] = {}
 
@@ -90,19 +93,27 @@ class Evaluator:
                 row["status"] = self._two_views.measure(row, views, combination)
             except StageError as failure:
                 row["status"], row["message"] = failure.status, failure.message
+            if self._folder is not None and row["message"] is None:
+                row["message"] = self._folder.problem
             yield add_metrics(row)
 
     def _detect(self, name: str, image_name: str, pair: Pair) -> ImageFeatures | StageError:
         self._announce(StageCall("detect", pair.index, image_name, name))
+        image = self._context.dataset.image(image_name)
+        kept = self._folder.keypoints(image, name) if self._folder else None
         try:
+            if kept is not None:
+                return self._extractor.read(image, *kept)
             if name not in self._detectors:
                 self._detectors[name] = run_stage(
                     name, lambda: make_detector(self._context.methods, name)
                 )
-            image = self._context.dataset.image(image_name)
-            return self._extractor.detect(image, name, self._detectors[name])
+            found = self._extractor.detect(image, name, self._detectors[name])
         except StageError as failure:
             return failure
+        if self._folder:
+            self._folder.keep_keypoints(image, name, found.keypoints, found.detect_time)
+        return found
 
     def _describe(
         self, image: ImageFeatures, combination: Combination, image_name: str, pair: Pair
@@ -111,13 +122,23 @@ class Evaluator:
         if name not in image.described:
             detector = combination.detector
             self._announce(StageCall("describe", pair.index, image_name, detector, name))
-            what = f"{name} describing {detector} keypoints of {image_name}"
-            try:
-                descriptor = self._descriptor(name, detector)
-                image.described[name] = self._extractor.describe(image, name, what, descriptor)
-            except StageError as failure:
-                image.described[name] = failure
+            source = self._context.dataset.image(image_name)
+            kept = self._folder.described(source, detector, name) if self._folder else None
+            image.described[name] = kept or self._describe_anew(image, name, detector, source)
         return _unless_failed(image.described[name])
+
+    def _describe_anew(
+        self, image: ImageFeatures, name: str, detector: str, source: Image
+    ) -> Described | StageError:
+        what = f"{name} describing {detector} keypoints of {source.name}"
+        try:
+            descriptor = self._descriptor(name, detector)
+            described = self._extractor.describe(image, name, what, descriptor)
+        except StageError as failure:
+            return failure
+        if self._folder:
+            self._folder.keep_described(source, detector, name, described)
+        return described
 
     def _descriptor(self, name: str, detector: str) -> DescriptorStage:
         methods = self._context.methods

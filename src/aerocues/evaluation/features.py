@@ -52,6 +52,15 @@ def run_stage(what: str, call: Callable[[], Result]) -> Result:
         raise StageError("error", f"{what}: {kind}: {error}") from error
 
 
+def warm_up(call: Callable[[], Any]) -> None:
+    """Call a method on little, for what only the first call takes time for."""
+    try:
+        run_stage("warming up", call)
+    except StageError:
+        # The timed call right after fails the same way and is recorded.
+        return
+
+
 @dataclass(frozen=True)
 class Described:
     """Features of one image under one descriptor, with the time that describing took."""
@@ -100,17 +109,23 @@ class FeatureExtractor:
 
     def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
         """Decode an image and detect its keypoints; StageError where that fails."""
-        pixels = run_stage(f"reading {image.name}", image.read)
+        pixels = self._pixels(image)
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
             self._warm.add(("detector", name))
-            self._warm_up(lambda: detector.call(_centre(pixels.bgr)))
-        cv2.setRNGSeed(self._seed)
+            warm_up(lambda: detector.call(_centre(pixels.bgr)))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
-        inner = Pixels(pixels.bgr, _inner(pixels.valid))
-        kept = self._limit.keep(_on_valid_pixels(found, inner.valid), self._seed)
-        return ImageFeatures(inner, kept, time)
+        kept = self._limit.keep(_on_valid_pixels(found, pixels.valid), self._seed)
+        return ImageFeatures(pixels, kept, time)
+
+    def read(self, image: Image, keypoints: Keypoints, detect_time: StageTime) -> ImageFeatures:
+        """An image with keypoints that were detected before; StageError if it cannot be read."""
+        return ImageFeatures(self._pixels(image), keypoints, detect_time)
+
+    def _pixels(self, image: Image) -> Pixels:
+        pixels = run_stage(f"reading {image.name}", image.read)
+        return Pixels(pixels.bgr, _inner(pixels.valid))
 
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage
@@ -124,19 +139,11 @@ class FeatureExtractor:
         if ("descriptor", name) not in self._warm and len(image.keypoints):
             self._warm.add(("descriptor", name))
             few = descriptor.prepare(image.keypoints.take(np.arange(1)))
-            self._warm_up(lambda: descriptor.call(bgr, few))
-        cv2.setRNGSeed(self._seed)
+            warm_up(lambda: descriptor.call(bgr, few))
         raw, time = run_stage(
             what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
         )
         return Described(run_stage(what, lambda: descriptor.read(raw)), time)
-
-    def _warm_up(self, call: Callable[[], Any]) -> None:
-        try:
-            run_stage("warming up", call)
-        except StageError:
-            # The timed call right after fails the same way and is recorded.
-            return
 
 
 def _centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:

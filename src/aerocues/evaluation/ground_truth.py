@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from aerocues.datasets.dataset import Pixels
 from aerocues.datasets.true_geometry import Points
@@ -29,6 +28,9 @@ def repeatability(points_1: Points, points_2: Points, truth: Correspondence) -> 
     float or None
         None where one image has no covisible keypoint.
     """
+    # A tenth of a second in each worker, of which most never come here.
+    from scipy.spatial import cKDTree
+
     moved, second = truth.shared(_distinct(points_1), _distinct(points_2))
     if not len(moved) or not len(second):
         return None

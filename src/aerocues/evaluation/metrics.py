@@ -64,10 +64,18 @@ def total_seconds(row: Mapping[str, Any]) -> float | None:
     return total
 
 
-def _per_thousand(count: str) -> Callable[[Mapping[str, Any]], float | None]:
+PER_THOUSAND: dict[str, str] = {
+    "seconds_per_1k_matches": "matches",
+    "seconds_per_1k_inliers": "inliers",
+    "seconds_per_1k_keypoints": "keypoints_1",
+}
+"""Metrics that divide `total_seconds` by a count."""
+
+
+def _per_thousand(name: str) -> Callable[[Mapping[str, Any]], float | None]:
     def compute(row: Mapping[str, Any]) -> float | None:
         total = total_seconds(row)
-        return None if total is None else _ratio(1000 * total, row[count])
+        return None if total is None else _ratio(1000 * total, row[PER_THOUSAND[name]])
 
     return compute
 
@@ -122,21 +130,21 @@ METRICS: tuple[Metric, ...] = (
         "s",
         "lower",
         "1000 x total_seconds / matches; undefined without matches",
-        _per_thousand("matches"),
+        _per_thousand("seconds_per_1k_matches"),
     ),
     Metric(
         "seconds_per_1k_inliers",
         "s",
         "lower",
         "1000 x total_seconds / inliers; undefined without inliers",
-        _per_thousand("inliers"),
+        _per_thousand("seconds_per_1k_inliers"),
     ),
     Metric(
         "seconds_per_1k_keypoints",
         "s",
         "lower",
         "1000 x total_seconds / keypoints_1; undefined without keypoints",
-        _per_thousand("keypoints_1"),
+        _per_thousand("seconds_per_1k_keypoints"),
     ),
 )
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.cost import estimate_pair_seconds
+from aerocues.evaluation.cost import costly_descriptors, estimate_pair_seconds
 from aerocues.evaluation.planned_rows import PlannedRow
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
@@ -137,17 +137,23 @@ class _Planner:
         self._method_keys = {c: _method_key(context, c) for c in combinations}
         self.tally = _Tally()
 
-    def unit(self, detector: str, group: Sequence[Pair]) -> Unit | None:
-        """What is left to do for a detector on consecutive pairs; None if nothing is."""
-        combinations = [c for c in self._method_keys if c.detector == detector]
-        work = tuple(
-            part for pair in group if (part := self._pair_work(pair, combinations)).combinations
-        )
-        if not work:
-            return None
+    def units(self, detector: str, group: Sequence[Pair]) -> Iterator[Unit]:
+        """What is left to do for a detector on consecutive pairs.
+
+        Costly descriptors are units of their own, which spreads them over the workers.
+        """
         methods = self._context.methods
-        cost = sum(estimate_pair_seconds(methods, detector, part.combinations) for part in work)
-        return Unit(detector, work, cost)
+        combinations = [c for c in self._method_keys if c.detector == detector]
+        work = [self._pair_work(pair, combinations) for pair in group]
+        names = dict.fromkeys(c.descriptor for part in work for c in part.combinations)
+        apart = costly_descriptors(methods, detector, names)
+        for kept in (*([name] for name in apart), [name for name in names if name not in apart]):
+            own = frozenset(c for c in combinations if c.descriptor in kept)
+            parts = (part.only(own, keep=True) for part in work)
+            left = tuple(part for part in parts if part.combinations)
+            if left:
+                cost = sum(estimate_pair_seconds(methods, detector, p.combinations) for p in left)
+                yield Unit(detector, left, cost)
 
     def _pair_work(self, pair: Pair, combinations: Sequence[Combination]) -> PairWork:
         chosen: list[Combination] = []
@@ -172,6 +178,7 @@ def make_plan(
     combinations: Sequence[Combination],
     is_present: Callable[[str], bool],
     progress: Callable[[int, int], None] = lambda done, total: None,
+    pairs: frozenset[int] | None = None,
 ) -> Plan:
     """Divide the work into units, the costliest first.
 
@@ -184,6 +191,8 @@ def make_plan(
         Whether the row with a given key is in the store.
     progress : callable
         Told how many of all images have been read for their hashes.
+    pairs : frozenset of int, optional
+        Numbers of the pairs to plan for; all by default.
 
     Raises
     ------
@@ -201,9 +210,11 @@ def make_plan(
     detectors = dict.fromkeys(combination.detector for combination in combinations)
     units = [
         unit
-        for group in _groups(context.dataset.pairs)
+        for group in _groups(
+            [p for p in context.dataset.pairs if pairs is None or p.index in pairs]
+        )
         for detector in detectors
-        if (unit := planner.unit(detector, group)) is not None
+        for unit in planner.units(detector, group)
     ]
     units.sort(key=lambda unit: -unit.cost)
     tally = planner.tally

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
+from aerocues.evaluation.clock import DISTURBED
 from aerocues.evaluation.store import Store
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ class RunStatus:
     """How far a run has got.
 
     ``statuses`` counts rows by status; ``failures`` counts the rows that ended otherwise than ok,
-    by status, detector and descriptor, with an example message.
+    by status, detector and descriptor, with an example message. ``timings`` counts rows by where
+    their times come from, and ``disturbed`` those of which a stage never had a core to itself.
     """
 
     planned: int
@@ -31,6 +33,8 @@ class RunStatus:
     statuses: Mapping[str, int]
     failures: pl.DataFrame
     exclusions: list[dict[str, Any]]
+    timings: Mapping[str, int]
+    disturbed: int
 
     @property
     def left(self) -> int:
@@ -143,4 +147,6 @@ class Results:
             statuses=dict(zip(counts["status"], counts["len"], strict=True)),
             failures=failures,
             exclusions=list(settings.get("exclusions", [])),
+            timings=dict(sorted(table["timing"].drop_nulls().value_counts().iter_rows())),
+            disturbed=int((table["wall_over_cpu"] > DISTURBED).sum()),
         )

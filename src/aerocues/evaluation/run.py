@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context, run_facts
 from aerocues.evaluation.engine import Activity, Engine, Finished
+from aerocues.evaluation.passes import TIMED_PAIRS, Pass, passes
 from aerocues.evaluation.plan import Plan, content_hash, make_plan
 from aerocues.evaluation.planned_rows import planned_table
 from aerocues.evaluation.protocol import Timing
@@ -39,8 +40,8 @@ class Observer:
     def hashing(self, done: int, total: int) -> None:
         """`done` of `total` images have been read to tell whether they changed."""
 
-    def planned(self, plan: Plan) -> None:
-        """The work has been divided into units."""
+    def planned(self, plan: Plan, timing: Timing) -> None:
+        """The work of a pass, which is timed in this way, has been divided into units."""
 
     def working(self, activities: Sequence[Activity]) -> None:
         """What the workers are doing, several times a second."""
@@ -56,7 +57,7 @@ class Limits:
     Parameters
     ----------
     workers : int or None
-        Processes at a time; as many as there are cores, one for exclusive timing.
+        Processes at a time; as many as there are cores by default. Exclusive timing takes one.
     timeout : float
         CPU seconds of one stage call, and the wall seconds that it may sit idle.
     memory_limit_mb : int or None
@@ -81,20 +82,16 @@ def local_engine(limits: Limits, timing: Timing) -> LocalEngine:
     Raises
     ------
     SelectionError
-        If several workers are asked for with exclusive timing, or a limit is not positive.
+        If a limit is not positive.
     """
     import psutil
 
     from aerocues.evaluation.local_engine import LocalEngine
 
-    workers = limits.workers or (1 if timing == "exclusive" else usable_cores())
+    workers = limits.workers or usable_cores()
     if workers < 1 or limits.timeout <= 0:
         raise SelectionError("--workers and --timeout must be positive; leave them out to choose")
-    if timing == "exclusive" and workers > 1:
-        raise SelectionError(
-            "exclusive timing gives one stage call the whole machine; leave --workers out or use "
-            "--timing shared"
-        )
+    workers = 1 if timing == "exclusive" else workers
     memory = limits.memory_limit_mb or int(0.8 * psutil.virtual_memory().total / 2**20 / workers)
     return LocalEngine(workers, limits.timeout, memory)
 
@@ -124,9 +121,11 @@ def run(
     everything: bool = False,
     preset: str | Preset = "default",
     seed: int = 0,
-    timing: Timing = "shared",
+    timing: Timing = "exclusive",
+    timed_pairs: int = TIMED_PAIRS,
     limit: KeypointLimit = ALL_KEYPOINTS,
     limits: Limits | None = None,
+    features: str | Path | None = None,
     retry_failed: bool = False,
     observer: Observer | None = None,
     engine: Engine | None = None,
@@ -150,19 +149,25 @@ def run(
         Preset of parameters and protocol, or the file of one; see `aerocues.methods.presets`.
     seed : int
         Set before every stage call.
-    timing : {"shared", "exclusive", "estimated"}
-        Whether several stages may run at once, and whether brute force is timed on a part of the
-        descriptors only; quality does not depend on it.
+    timing : {"exclusive", "shared", "estimated"}
+        Whether some pairs are timed by themselves once more, or times are those of workers beside
+        each other, of brute force on a part of the descriptors where they are estimated. Quality
+        does not depend on it.
+    timed_pairs : int
+        How many pairs exclusive timing takes, a seeded sample; 0 for all. The times of the other
+        pairs are scaled by what they show.
     limit : KeypointLimit
         How many keypoints of an image are kept; all by default.
     limits : Limits, optional
         Workers, time and memory.
+    features : path, optional
+        Folder in which features are kept, and found by other runs.
     retry_failed : bool
         Measure again what crashed, raised an error, ran out of time or memory.
     observer : Observer, optional
         Told how it goes on.
     engine : Engine, optional
-        Where units run; worker processes on this machine by default.
+        Where units of all passes run; worker processes on this machine by default.
 
     Returns
     -------
@@ -176,21 +181,44 @@ def run(
     if isinstance(dataset, str):
         dataset = open_dataset(dataset)
     observer = observer or Observer()
-    engine = engine or local_engine(limits or Limits(), timing)
     parts = as_preset(preset)
     context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
+    if features is not None:
+        from aerocues.evaluation.feature_folder import checked_folder
+
+        context = replace(context, features=checked_folder(Path(features).absolute()))
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
+    turns = passes(dataset.pairs, timing, timed_pairs, seed)
+    engines = [engine or local_engine(limits or Limits(), turn.timing) for turn in turns]
     store = Store.create(Path(output))
     with store.writing():
-        present = store.present(timing, retry_failed=retry_failed)
-        plan = make_plan(context, chosen, present.__contains__, observer.hashing)
-        dataset_key = content_hash([dataset.geometry, dataset.settings])
-        store.write_plan(planned_table(context, dataset_key, plan.rows))
-        store.write_run(run_facts(context, parts, plan, chosen))
-        observer.planned(plan)
-        _measure(engine.run(plan.units, context, observer.working), store, observer)
+        for number, (turn, runner) in enumerate(zip(turns, engines, strict=True)):
+            own = context.timed(turn.timing)
+            plan = _plan(own, chosen, turn, store, observer.hashing, retry_failed=retry_failed)
+            if number == 0:
+                dataset_key = content_hash([dataset.geometry, dataset.settings])
+                store.write_plan(planned_table(context, dataset_key, plan.rows))
+                store.write_run(run_facts(context, parts, plan, chosen))
+            observer.planned(plan, turn.timing)
+            _measure(runner.run(plan.units, own, observer.working), store, observer)
     return Results(store.folder)
+
+
+def _plan(
+    context: Context,
+    combinations: Sequence[Combination],
+    turn: Pass,
+    store: Store | None,
+    hashing: Callable[[int, int], None],
+    *,
+    retry_failed: bool,
+) -> Plan:
+    """The plan of a pass, of which the store may hold a part already."""
+    present: frozenset[str] = frozenset()
+    if store is not None:
+        present = store.present(turn.timing, retry_failed=retry_failed)
+    return make_plan(context, combinations, present.__contains__, hashing, turn.pairs)
 
 
 def plan_run(
@@ -203,21 +231,23 @@ def plan_run(
     everything: bool = False,
     preset: str | Preset = "default",
     seed: int = 0,
-    timing: Timing = "shared",
+    timing: Timing = "exclusive",
+    timed_pairs: int = TIMED_PAIRS,
     limit: KeypointLimit = ALL_KEYPOINTS,
     retry_failed: bool = False,
     observer: Observer | None = None,
-) -> Plan:
-    """What `run` would do with the same arguments; nothing is measured or written."""
+) -> list[tuple[Timing, Plan]]:
+    """What `run` would do with the same arguments, pass by pass; nothing is measured or written."""
     parts = as_preset(preset)
     context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = _select(context, combinations, kept, everything=everything)
-    present: frozenset[str] = frozenset()
-    if (Path(output) / RUN).is_file():
-        present = Store.open(Path(output)).present(timing, retry_failed=retry_failed)
+    store = Store.open(Path(output)) if (Path(output) / RUN).is_file() else None
     hashing = (observer or Observer()).hashing
-    return make_plan(context, chosen, present.__contains__, hashing)
+    return [
+        (turn.timing, _plan(context, chosen, turn, store, hashing, retry_failed=retry_failed))
+        for turn in passes(dataset.pairs, timing, timed_pairs, seed)
+    ]
 
 
 def _measure(
@@ -225,6 +255,5 @@ def _measure(
 ) -> None:
     with contextlib.closing(finished_units):  # an interruption ends the workers here and now
         for finished in finished_units:
-            name = content_hash([row["row_key"] for row in finished.rows])
-            store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
+            store.write_finished(finished)
             observer.finished(finished)

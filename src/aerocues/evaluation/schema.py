@@ -79,6 +79,24 @@ TIMES: tuple[Column, ...] = (
     *_seconds("verify_seconds", "estimate the fundamental matrix"),
 )
 
+HOW_TIMED: tuple[Column, ...] = (
+    _count("timing_repeats", "calls behind the median of a stage, at least (exclusive timing)"),
+    Column(
+        "timing_spread",
+        "float",
+        "ratio",
+        "largest (slowest - fastest) / median of the calls of a stage, for those of a millisecond "
+        "or more (exclusive timing)",
+    ),
+    Column(
+        "wall_over_cpu",
+        "float",
+        "ratio",
+        "largest wall / CPU seconds of a stage of a millisecond or more; above 1.1 it had to share "
+        "its core, in every attempt (exclusive timing)",
+    ),
+)
+
 RESOURCES: tuple[Column, ...] = (
     Column("descriptor_bytes", "integer", "B", "bytes of one descriptor"),
     Column(
@@ -158,7 +176,8 @@ PROVENANCE: tuple[Column, ...] = (
     Column("seed", "integer", "", "seed set before every stage call"),
     _text(
         "timing",
-        "exclusive: a core of its own; shared: several workers at once; estimated: "
+        "exclusive: a core of its own; scaled: as measured beside others, times what a core of its "
+        "own makes of that for the combination; shared: several workers at once; estimated: "
         "shared, with brute force timed on a part of the descriptors",
     ),
     Column("measured_at", "float", "s", "when the row was measured, in seconds since 1970 (UTC)"),
@@ -177,6 +196,7 @@ COLUMNS: tuple[Column, ...] = (
     *DERIVED,
     *GROUND_TRUTH,
     *TIMES,
+    *HOW_TIMED,
     *RESOURCES,
     *PROVENANCE,
 )

@@ -12,15 +12,19 @@ from typing import TYPE_CHECKING, Any
 from aerocues.errors import StoreError
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
+from aerocues.evaluation.plan import content_hash
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
 from aerocues.evaluation.protocol import TIMINGS, Timing
 from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
+from aerocues.evaluation.scaled_times import with_scaled_times
 from aerocues.evaluation.schema import polars_schema
 from aerocues.evaluation.statuses import STATUSES
 from aerocues.evaluation.whole_files import json_content, parquet_content
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from aerocues.evaluation.engine import Finished
 
 PARTS = "parts"
 RUN = "run.json"
@@ -115,6 +119,14 @@ class Store(ReconstructionStore):
         table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
         self._write(self._parts / f"{name}.parquet", parquet_content(table))
 
+    def write_finished(self, finished: Finished) -> None:
+        """Store what an engine finished; see `write_rows`.
+
+        The same measurements with other timings are another part.
+        """
+        content = [[row["row_key"], row["timing"]] for row in finished.rows]
+        self.write_rows(f"{finished.unit.detector}-{content_hash(content)}", finished.rows)
+
     def write_run(self, facts: Mapping[str, Any]) -> None:
         """Store the configuration, the versions and the machine of the latest run."""
         self._write(self.folder / RUN, json_content(facts))
@@ -164,7 +176,8 @@ class Store(ReconstructionStore):
     def present(self, timing: Timing, *, retry_failed: bool) -> frozenset[str]:
         """Keys of the rows that need not be measured again.
 
-        Rows with worse times do not serve where better ones are asked for; the converse does.
+        Rows with worse times do not serve where better ones are asked for, unless they failed; the
+        converse does.
         """
         parts = self.parts()
         if not parts:
@@ -173,16 +186,18 @@ class Store(ReconstructionStore):
 
         rows = self._scan(parts).select("row_key", "status", "timing")
         good_enough = TIMINGS[TIMINGS.index(timing) :]
-        rows = rows.filter(pl.col("timing").is_in(good_enough))
+        failed = pl.col("status").is_in(RETRIED)
+        rows = rows.filter(failed | pl.col("timing").is_in(good_enough))
         if retry_failed:
-            rows = rows.filter(~pl.col("status").is_in(RETRIED))
+            rows = rows.filter(~failed)
         return frozenset(self._collect(rows)["row_key"].to_list())
 
     def table(self) -> pl.DataFrame:
         """The measured ones among the planned rows, each once, in order.
 
         Where a row was measured more than once, one that did not fail counts before one that did,
-        better times before worse ones (`protocol.TIMINGS`), and then the latest.
+        better times before worse ones (`protocol.TIMINGS`), and then the latest. Where others of
+        its combination were timed exclusively, its times are scaled (`scaled_times`).
         """
         import polars as pl
 
@@ -191,20 +206,18 @@ class Store(ReconstructionStore):
         if not parts:
             return pl.DataFrame(schema=schema)
         planned = self.planned().select(*IDENTITY_NAMES, "row_key").lazy()
-        measured = (
-            self._scan(parts)
-            .drop(IDENTITY_NAMES)
-            .sort(
-                ~pl.col("status").is_in(RETRIED),
-                pl.col("timing").replace_strict(
-                    {name: rank for rank, name in enumerate(TIMINGS)}, default=-1
-                ),
-                "measured_at",
-                nulls_last=False,
-            )
-            .unique("row_key", keep="last", maintain_order=True)
-        )
-        rows = planned.join(measured, on="row_key").select(list(schema)).sort(IDENTITY_NAMES)
+        measured = self._scan(parts)
+        best = measured.sort(
+            ~pl.col("status").is_in(RETRIED),
+            pl.col("timing").replace_strict(
+                {name: rank for rank, name in enumerate(TIMINGS)}, default=-1
+            ),
+            "measured_at",
+            nulls_last=False,
+        ).unique("row_key", keep="last", maintain_order=True)
+        timed = with_scaled_times(best, measured.filter(~pl.col("status").is_in(RETRIED)))
+        rows = planned.join(timed.drop(IDENTITY_NAMES), on="row_key")
+        rows = rows.select(list(schema)).sort(IDENTITY_NAMES)
         return self._collect(rows)
 
     def rows(self) -> pl.DataFrame:

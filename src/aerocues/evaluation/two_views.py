@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import cv2
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.brute_force_time import SampledBruteForce
 from aerocues.evaluation.clock import Clock, StageTime
-from aerocues.evaluation.features import run_stage
+from aerocues.evaluation.features import run_stage, warm_up
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context, StageCall
 from aerocues.evaluation.verification import Verifiers
-from aerocues.methods.arrays import Matches
+from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
 
 BRUTE_FORCE = "BF"
+WARM_UP_FEATURES = 32
 Announce = Callable[[StageCall], None]
 
 
@@ -62,18 +62,18 @@ class TwoViewMeasurement:
         self._announce(_call("match", views.pair, combination))
         what = f"{combination} matching {views.pair.image_1} and {views.pair.image_2}"
         kind = (combination.matcher, combination.norm)
-        if kind not in self._matchers:
-            self._matchers[kind] = run_stage(
-                what, lambda: make_matcher(self._context.methods, *kind)
-            )
-        matcher = self._matchers[kind]
         first, second = (described.features for described in views.described)
+        if kind not in self._matchers:
+            made = run_stage(what, lambda: make_matcher(self._context.methods, *kind))
+            self._matchers[kind] = made
+            few = [_first_ones(features) for features in (first, second)]
+            warm_up(lambda: made.call(*few))
+        matcher = self._matchers[kind]
         if combination.matcher == BRUTE_FORCE and self._context.protocol.timing == "estimated":
             sampled = SampledBruteForce(matcher, combination.norm, self._clock)
             matches, time = run_stage(what, lambda: sampled.match(first, second))
             record_time(row, "match_seconds", time)
             return matches
-        cv2.setRNGSeed(self._context.protocol.seed)
         raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
         record_time(row, "match_seconds", time)
         return run_stage(what, lambda: matcher.read(raw))
@@ -97,6 +97,11 @@ class TwoViewMeasurement:
         return "ok" if verdict.passed else "chance"
 
 
+def _first_ones(features: Features) -> Features:
+    kept = np.arange(min(len(features), WARM_UP_FEATURES))
+    return Features(features.keypoints.take(kept), features.descriptors[kept])
+
+
 def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:
     images = f"{pair.image_1} and {pair.image_2}"
     return StageCall(
@@ -110,7 +115,13 @@ def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:
 
 
 def record_time(row: Row, name: str, time: StageTime) -> None:
-    """Enter the wall and CPU seconds of a stage, and its rise of memory where it is known."""
+    """Enter the wall and CPU seconds of a stage, and what else is known of its calls."""
     row[name], row[f"{name}_cpu"] = time.wall, time.cpu
     if time.peak_memory is not None:
         row["peak_memory_mb"] = max(row["peak_memory_mb"] or 0.0, time.peak_memory)
+    if time.repeats is None:
+        return
+    row["timing_repeats"] = min(row["timing_repeats"] or time.repeats, time.repeats)
+    for column, value in (("timing_spread", time.spread), ("wall_over_cpu", time.wall_over_cpu)):
+        if value is not None:
+            row[column] = max(row[column] or 0.0, value)

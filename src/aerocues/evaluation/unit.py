@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.protocol import MeasurementProtocol
+from aerocues.evaluation.protocol import MeasurementProtocol, Timing
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 
@@ -78,7 +79,10 @@ class StageCall:
 
 @dataclass(frozen=True)
 class Context:
-    """What every unit of a run shares; sent to each worker once."""
+    """What every unit of a run shares; sent to each worker once.
+
+    ``features`` is a folder in which features are kept for other runs, if that is asked for.
+    """
 
     dataset: Dataset
     methods: Methods
@@ -86,6 +90,11 @@ class Context:
     protocol: MeasurementProtocol
     settings_key: str
     machine: str
+    features: Path | None = None
+
+    def timed(self, timing: Timing) -> Context:
+        """The same with another timing, which no row key depends on."""
+        return replace(self, protocol=replace(self.protocol, timing=timing))
 
 
 def _blamed(work: PairWork, call: StageCall, pairs: frozenset[int]) -> frozenset[Combination]:

@@ -228,7 +228,6 @@ class Verifier:
         count = len(points_1)
         if look.sampling != "uniform":
             points_1, points_2 = points_1[order], points_2[order]
-        cv2.setRNGSeed(self._protocol.seed)
         raw, time = self._clock.time(
             lambda: _estimate(look.find, points_1, points_2, look.parameters)
         )

@@ -2,28 +2,48 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-PACKAGES = ("aerocues", "opencv-contrib-python-headless", "numpy", "scipy", "polars", "pyarrow")
+PACKAGES = (
+    "aerocues",
+    "opencv-contrib-python-headless",
+    "opencv-contrib-python",
+    "opencv-python-headless",
+    "opencv-python",
+    "numpy",
+    "scipy",
+    "polars",
+    "pyarrow",
+)
+# What a board says it is. All Jetsons of a generation have the same text in /proc/cpuinfo.
+BOARD = Path("/proc/device-tree/model")
+
+CORES = Path("/sys/devices/system/cpu")
 
 
 def software_versions() -> dict[str, str]:
-    """Versions of Python and of the packages that a measurement depends on."""
+    """Versions of Python, of OpenCV as it says itself, and of the packages that are installed.
+
+    OpenCV of a board's system is no package, and the light install has no pyarrow.
+    """
     import cv2
 
     found = {"python": platform.python_version(), "opencv": cv2.__version__}
     for name in PACKAGES:
-        try:
+        with contextlib.suppress(PackageNotFoundError):
             found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed as a package"
     return found
 
 
 def _processor() -> str:
+    with contextlib.suppress(OSError):  # no board, or a telephone that keeps it to itself
+        board = BOARD.read_text(errors="replace").strip("\0 \n")
+        if board:
+            return board
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith(("model name", "Model")):
@@ -34,15 +54,26 @@ def _processor() -> str:
 
 
 def machine_name() -> str:
-    """Processor and number of cores, without anything that names the owner."""
+    """Board or processor and number of cores, without anything that names the owner."""
     return f"{_processor()}, {os.cpu_count()} cores"
 
 
+def _governors() -> str:
+    """How the cores choose their clocks, such as ``performance``; empty where it is not told."""
+    found = set()
+    for file in CORES.glob("cpu[0-9]*/cpufreq/scaling_governor"):
+        with contextlib.suppress(OSError):
+            found.add(file.read_text().strip())
+    return ", ".join(sorted(found))
+
+
 def machine_facts() -> dict[str, str | int]:
-    """The machine as it is recorded in ``run.json``."""
+    """The machine as it is recorded in ``run.json``, with how it chooses its clock if it tells."""
     import psutil
 
+    governors = _governors()
     return {
+        **({"governor": governors} if governors else {}),
         "name": machine_name(),
         "system": f"{platform.system()} {platform.release()}",
         "architecture": platform.machine(),

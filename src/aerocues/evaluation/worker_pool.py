@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import collections
 from collections.abc import Generator, Iterator, Sequence
 from multiprocessing.connection import wait
 
@@ -11,6 +10,7 @@ from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.giving_up import settle_loss
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.unit import Context, Unit
+from aerocues.evaluation.unit_queue import UnitQueue
 from aerocues.evaluation.worker_process import WorkerProcess
 
 POLL_SECONDS = 0.2
@@ -29,6 +29,7 @@ class WorkerPool:
         self._exclusive = context.protocol.timing == "exclusive"
         self._idle: list[WorkerProcess] = []
         self._busy: dict[WorkerProcess, Unit] = {}
+        self._finished: dict[WorkerProcess, Unit] = {}
 
     def _fresh(self) -> WorkerProcess:
         used = {worker.number for worker in (*self._idle, *self._busy)}
@@ -37,27 +38,29 @@ class WorkerPool:
 
     def run(self, units: Sequence[Unit], watch: Watch) -> Generator[Finished, None, None]:
         """Run all units; workers that are idle at the end are kept."""
-        queue = collections.deque(units)
+        queue = UnitQueue(units, self._context.dataset)
         try:
             while queue or self._busy:
                 self._fill(queue)
                 watch(self._activities())
                 for finished, remaining in self._collect():
-                    queue.extendleft(reversed(remaining))
+                    queue.put_back(remaining)
                     if finished is not None:
                         yield finished
         finally:
             while self._busy:
                 self._busy.popitem()[0].stop()
 
-    def _fill(self, queue: collections.deque[Unit]) -> None:
+    def _fill(self, queue: UnitQueue) -> None:
         """Give every worker that has nothing to do the next unit."""
         while queue and len(self._busy) < self._workers:
-            unit = queue.popleft()
-            fresh = self._needs_own_process(unit)
-            if fresh and self._idle:
-                self._idle.pop().stop()
-            worker = self._idle.pop() if self._idle and not fresh else self._fresh()
+            idle = self._idle.pop() if self._idle else None
+            finished = self._finished.pop(idle, None) if idle else None
+            unit = queue.take(finished, self._busy.values())
+            if idle and self._needs_own_process(unit):
+                idle.stop()
+                idle = None
+            worker = idle or self._fresh()
             worker.begin(unit)
             self._busy[worker] = unit
 
@@ -98,6 +101,7 @@ class WorkerPool:
             worker.stop()
         else:
             self._idle.append(worker)
+            self._finished[worker] = unit
 
     def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
         unit = self._busy.pop(worker)

@@ -32,6 +32,15 @@ def opencv_class(name: str) -> Any:
     raise MethodUnavailableError(f"this OpenCV ({cv2.__version__}) has no {name}; {NEXT_STEP}")
 
 
+def why_missing(factory: str) -> str | None:
+    """Why a class of OpenCV cannot be used here, or None where it is there."""
+    try:
+        opencv_class(factory)
+    except MethodUnavailableError as error:
+        return str(error)
+    return None
+
+
 def _constant(text: str) -> Any:
     """The value of a constant such as ``KAZE.DIFF_PM_G2``; older builds spell it ``KAZE_...``."""
     owner, name = text.split(".")

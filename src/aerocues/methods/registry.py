@@ -10,8 +10,9 @@ from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
+from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT, MATCHERS, NORMS, MatcherRow, NormRow
-from aerocues.methods.parameters import OPENCV
+from aerocues.methods.parameters import OPENCV, why_missing
 from aerocues.methods.presets import Overrides, Preset
 
 
@@ -105,11 +106,14 @@ class Methods:
 
 
 def opencv_methods() -> Methods:
-    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers; EXACT on request."""
+    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers; EXACT on request.
+
+    What this build of OpenCV lacks, as those without the contributed modules do, is unavailable.
+    """
     return Methods(
-        {row.name: row for row in DETECTORS},
-        {row.name: row for row in DESCRIPTORS},
+        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DETECTORS},
+        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DESCRIPTORS},
         {row.name: row for row in NORMS},
         {row.name: row for row in MATCHERS},
-        on_request={EXACT.name: EXACT},
+        on_request={EXACT.name: replace(EXACT, unavailable=why_not_exact())},
     )

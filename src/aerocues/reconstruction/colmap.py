@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,22 @@ from aerocues.errors import ReconstructionError
 
 Array = NDArray[np.float64]
 UPGRADE = "install a newer one: pip install --upgrade pycolmap"
+
+
+def colmap_version() -> str:
+    """The version of pycolmap, which is not imported for it.
+
+    Raises
+    ------
+    ReconstructionError
+        If it is not installed, as in the light install for boards.
+    """
+    if find_spec("pycolmap") is None:
+        raise ReconstructionError(
+            "3D models need pycolmap, which is not installed; install it: pip install pycolmap, "
+            "or take the results to a machine that has it (aerocues results --pack)"
+        )
+    return version("pycolmap")
 
 
 def quiet() -> None:

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import io
 import shutil
-import zipfile
-import zlib
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from aerocues.evaluation.whole_files import write_whole
-from aerocues.methods.arrays import Features, Keypoints
+from aerocues.evaluation.feature_arrays import (
+    KEYPOINTS,
+    keypoint_arrays,
+    keypoints_of,
+    read_arrays,
+    write_arrays,
+)
+from aerocues.methods.arrays import Features
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.scene import FEATURES, Scene
-
-KEYPOINTS = tuple(field.name for field in fields(Keypoints))
-BROKEN = (ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,28 +40,18 @@ class FeatureFiles:
 
     def read(self, image: str) -> TimedFeatures | None:
         """What is there for an image; None where there is nothing, or it is damaged."""
-        file = self._file(image)
-        if not file.is_file():
+        arrays = read_arrays(self._file(image), (*KEYPOINTS, "descriptors", "seconds"))
+        if arrays is None:
             return None
-        try:
-            with np.load(file, allow_pickle=False) as arrays:
-                keypoints = Keypoints(**{name: arrays[name] for name in KEYPOINTS})
-                features = Features(keypoints, arrays["descriptors"])
-                return TimedFeatures(features, float(arrays["seconds"]))
-        except BROKEN:
-            return None
+        descriptors: Any = arrays["descriptors"]
+        features = Features(keypoints_of(arrays), descriptors)
+        return TimedFeatures(features, float(arrays["seconds"]))
 
     def write(self, image: str, found: TimedFeatures) -> None:
         """Keep features; OSError where there is no room."""
-        content = io.BytesIO()
-        keypoints = {name: getattr(found.features.keypoints, name) for name in KEYPOINTS}
-        np.savez(
-            content,
-            **keypoints,
-            descriptors=found.features.descriptors,
-            seconds=np.float64(found.seconds),
-        )
-        write_whole({self._file(image): content.getbuffer()})
+        arrays = keypoint_arrays(found.features.keypoints)
+        arrays |= {"descriptors": found.features.descriptors, "seconds": np.array(found.seconds)}
+        write_arrays(self._file(image), arrays)
 
     def _file(self, image: str) -> Path:
         return self.folder / f"{self._scene.features_key(image, self._combination)}.npz"

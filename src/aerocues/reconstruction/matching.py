@@ -43,7 +43,7 @@ class SceneMatcher:
         self._combination = combination
         self._announce = announce
         self._files = FeatureFiles(scene, combination)
-        self._clock = Clock(memory=False)
+        self._clock = Clock(scene.protocol.seed)
         limit = KeypointLimit(scene.protocol.max_keypoints)
         self._extractor = FeatureExtractor(self._clock, scene.protocol.seed, limit)
         self._held: OrderedDict[str, Features] = OrderedDict()

@@ -7,7 +7,6 @@ import json
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
-from importlib.metadata import version
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
@@ -22,6 +21,7 @@ from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import limited
+from aerocues.reconstruction.colmap import colmap_version
 from aerocues.reconstruction.engine import (
     ReconstructionLimits,
     in_groups,
@@ -126,7 +126,7 @@ def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Sc
         folder=output.absolute(),
         image_keys={image.name: image.source.content_key() for image in dataset.images},
         wanted=options.wanted,
-        versions=(software_versions()["opencv"], version("pycolmap")),
+        versions=(software_versions()["opencv"], colmap_version()),
     )
 
 
@@ -183,7 +183,7 @@ def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
         "protocol": asdict(scene.protocol),
         "cameras": [asdict(group) for group in scene.cameras],
         "time_limit": options.time_limit,
-        "versions": {**software_versions(), "pycolmap": version("pycolmap")},
+        "versions": {**software_versions(), "pycolmap": colmap_version()},
         "machine": machine_facts(),
     }
     write_whole({scene.folder / SETTINGS: json_content(facts)})

@@ -22,7 +22,7 @@ def linked_pairs(matched: MatchedScene, protocol: ReconstructionProtocol) -> lis
     measurement = MeasurementProtocol(
         seed=protocol.seed, verification=protocol.verification, chance=protocol.chance
     )
-    verifier = Verifier(measurement, "epipolar", Clock(memory=False))
+    verifier = Verifier(measurement, "epipolar", Clock(protocol.seed))
     return [names for names in enough if _beats_chance(verifier, matched, names)]
 
 

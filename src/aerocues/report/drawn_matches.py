@@ -68,9 +68,9 @@ class Drawer:
 
     def __init__(self, context: Context) -> None:
         cv2.setNumThreads(1)
-        clock = Clock(memory=False)
         self._context = context
         self._seed = context.protocol.seed
+        clock = Clock(self._seed)
         self._extractor = FeatureExtractor(clock, self._seed, context.protocol.limit)
         self._verifiers = Verifiers(context.protocol, context.dataset.geometry, clock)
         self._pair: Pair | None = None

@@ -10,6 +10,8 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Any
 
+from aerocues.errors import MethodUnavailableError
+
 PLACE = re.compile(r"\{\{(title|style|payload|app|plotly)\}\}")
 # What would end the element that the text stands in.
 END_OF_ELEMENT = re.compile(r"</(?=script|style)", re.IGNORECASE)
@@ -59,6 +61,12 @@ def _application(folder: Traversable) -> str:
 
 
 def _plotly() -> str:
-    from plotly.offline import get_plotlyjs
+    try:
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise MethodUnavailableError(
+            f"the page needs plotly ({error}); install it: pip install plotly, or report "
+            "where it is; --format markdown does without"
+        ) from error
 
     return str(get_plotlyjs())

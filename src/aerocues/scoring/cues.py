@@ -100,9 +100,17 @@ def rank(scores: Array) -> Array:
 
     Scores that differ by less than rounding can produce (1e-12) are equal.
     """
-    from scipy.stats import rankdata
-
-    return np.asarray(rankdata(-np.round(scores, DIGITS), method="min", axis=-1, nan_policy="omit"))
+    values = -np.round(np.asarray(scores, np.float64), DIGITS)
+    order = np.argsort(values, axis=-1, kind="stable")  # NaN come last
+    ordered = np.take_along_axis(values, order, axis=-1)
+    first = np.ones(ordered.shape, np.bool_)
+    first[..., 1:] = ordered[..., 1:] != ordered[..., :-1]
+    places = np.arange(1, ordered.shape[-1] + 1)
+    ranks = np.empty(ordered.shape)
+    np.put_along_axis(
+        ranks, order, np.maximum.accumulate(np.where(first, places, 0), axis=-1), axis=-1
+    )
+    return np.where(np.isnan(values), np.nan, ranks)
 
 
 def score(table: DecisionTable, settings: ScoreSettings | None = None) -> Scores:

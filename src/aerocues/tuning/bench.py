@@ -120,8 +120,7 @@ class Bench:
     ) -> None:
         with contextlib.closing(engine.run(units, self.context, look)) as finished_units:
             for finished in finished_units:
-                name = content_hash([row["row_key"] for row in finished.rows])
-                self._store.write_rows(f"{finished.unit.detector}-{name}", finished.rows)
+                self._store.write_finished(finished)
                 self._rows.update((str(row["row_key"]), row) for row in finished.rows)
 
     def _units(self, rows: Sequence[PlannedRow]) -> list[Unit]:

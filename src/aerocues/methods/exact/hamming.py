@@ -7,11 +7,9 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from aerocues.compiled import compiled
+from aerocues.compiled import compiled, numba
 from aerocues.methods.arrays import Float32Array, Int32Array
 
 Words = NDArray[np.uint32]
@@ -33,10 +31,10 @@ def _typed_bit_count(typing_context: Any, word: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.ctpop(arguments[0])
 
-    return types.uint32(types.uint32), generate
+    return numba.types.uint32(numba.types.uint32), generate
 
 
-_bit_count: Any = intrinsic(_typed_bit_count)
+_bit_count: Any = numba.extending.intrinsic(_typed_bit_count)
 
 
 @cache
