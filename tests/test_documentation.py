@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shlex
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +19,7 @@ import pytest
 from numpy.typing import NDArray
 
 from docs.tables import TABLES, rendered
+from tests.evaluation.cluster import Cluster
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -213,12 +216,30 @@ def install(folder: Path) -> None:
     assert built.returncode == 0, built.stderr
 
 
+@contextlib.contextmanager
+def cluster_of_boards(folder: Path) -> Iterator[str]:
+    """The address of a cluster with one worker, which is a board."""
+    pytest.importorskip("distributed")
+    with tempfile.TemporaryDirectory(dir=folder) as own:
+        cluster = Cluster(Path(own))
+        try:
+            cluster.start()
+            cluster.add_worker("--no-nanny", "--resources", "board=1")
+            yield cluster.address
+        finally:
+            cluster.stop()
+
+
 def run_command(folder: Path, command: str, shown: str, *, exact: bool) -> None:
     if command.startswith("make"):
         return
     if command.startswith("aerocues datasets fetch"):
         command = "aerocues datasets fetch --help"
-    done = run_in(folder, "bash", "-o", "pipefail", "-c", command)
+    with contextlib.ExitStack() as running:
+        if "--engine dask" in command:
+            address = running.enter_context(cluster_of_boards(folder))
+            command = re.sub(r"--scheduler \S+", f"--scheduler {address}", command)
+        done = run_in(folder, "bash", "-o", "pipefail", "-c", command)
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     if exact:
         assert done.stdout.split() == shown.split(), command

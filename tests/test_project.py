@@ -24,7 +24,9 @@ REGISTRY_HOSTS = tuple(
 )
 MACHINE_PATH = re.compile(r"(?<![\w.~/-])/(?:root|work|mnt|Users|home)/\w")
 LONGEST_SOURCE_FILE = 320
-HEAVY_MODULES = ("cv2", "numba", "plotly", "polars", "pooch", "pyarrow", "pycolmap", "scipy")
+HEAVY_MODULES = (
+    *("cv2", "distributed", "numba", "plotly", "polars", "pooch", "pyarrow", "pycolmap", "scipy"),
+)
 
 
 @pytest.fixture(scope="module")

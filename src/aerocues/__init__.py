@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from aerocues.datasets.catalog import open_dataset
     from aerocues.datasets.dataset import Dataset
     from aerocues.errors import AerocuesError
+    from aerocues.evaluation.dask_engine import DaskEngine
     from aerocues.evaluation.run import Limits, Observer
     from aerocues.measuring import import_results, run
     from aerocues.methods.arrays import Features, Keypoints, Matches
@@ -44,6 +45,7 @@ _MODULES = {
     "run": "measuring",
     "Limits": "evaluation.run",
     "Observer": "evaluation.run",
+    "DaskEngine": "evaluation.dask_engine",
     "Results": "results",
     "import_results": "measuring",
     "reconstruct": "modelling",
@@ -69,6 +71,7 @@ _MODULES = {
 __all__ = [
     "AerocuesError",
     "Combination",
+    "DaskEngine",
     "Dataset",
     "Features",
     "Keypoints",

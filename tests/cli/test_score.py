@@ -38,6 +38,22 @@ def test_a_ranking_is_a_table_with_intervals_and_weights(call: Call, finished: P
     assert "preset default" in answer.out
 
 
+def test_times_of_several_kinds_of_machine_are_not_mixed_in_silence(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    from tests.cli.other_machine import slower_copy
+
+    mixed = slower_copy(finished, tmp_path / "mixed")
+    alike = "kinds of machine are mixed"
+    assert alike not in call("score", finished).out
+    assert alike not in call("score", mixed).out
+    parts = sorted((mixed / "parts").glob("*.parquet"))
+    parts[0].write_bytes((finished / "parts" / parts[0].name).read_bytes())
+    printed = " ".join(call("score", mixed).out.split())
+    assert f"2 {alike}" in printed
+    assert "slow board" in printed
+
+
 def test_json_has_ranking_weights_and_settings(call: Call, finished: Path) -> None:
     facts = json.loads(call("score", finished, "--json", "--seed", 3, "--resamples", 60).out)
     ranking = facts["ranking"]

@@ -82,6 +82,13 @@ def fail_strangely() -> None:
     raise KeyboardInterrupt
 
 
+def kill_parent() -> None:
+    """As a system does that is short of memory: the process that started this one goes, too."""
+    time.sleep(1)
+    os.kill(os.getppid(), signal.SIGKILL)
+    time.sleep(10)
+
+
 def do_nothing() -> None:
     pass
 
@@ -98,6 +105,7 @@ FAULTS: dict[str, Callable[[], None]] = {
     "CV2": fail_in_opencv,
     "STRANGE": fail_strangely,
     "NONSENSE": do_nothing,
+    "KILL_PARENT": kill_parent,
 }
 
 

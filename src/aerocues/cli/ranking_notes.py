@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from aerocues.cli.console import count
 
 if TYPE_CHECKING:
+    from aerocues.scoring.measured import MeasuredTable
     from aerocues.scoring.ranking import Ranking
 
 NAMED = 8
@@ -28,6 +29,17 @@ def notes(ranking: Ranking) -> list[str]:
             f"without a score, as they lack a criterion: {len(unscored)} ({_some(unscored, 3)})"
         )
     return lines
+
+
+def mixed_machines(measured: MeasuredTable) -> list[str]:
+    """A line where times of several kinds of machine went into one ranking."""
+    if len(measured.machines) < 2:
+        return []
+    return [
+        f"Times of {len(measured.machines)} kinds of machine are mixed here "
+        f"({'; '.join(measured.machines)}): the part that speed has in the scores is not fair. "
+        "Measure each kind into a folder of its own (--resource)."
+    ]
 
 
 def _some(names: list[str], number: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import count, plain_table, print_table, standard_output
-from aerocues.cli.ranking_notes import notes
+from aerocues.cli.ranking_notes import mixed_machines, notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,7 +79,7 @@ def print_best(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
     line = f"{measured.dataset}: {shown}{count(number, 'combination')} on {pairs}"
     console.print(Text(line, style="bold"))
     print_table(console, _best(ranking, measured, top))
-    for note in notes(ranking):
+    for note in (*notes(ranking), *mixed_machines(measured)):
         console.print(Text(note, style="dim"))
 
 

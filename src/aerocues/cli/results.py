@@ -103,7 +103,7 @@ def _print_summary(found: Results, top: int) -> None:
     combinations = table.select("detector", "descriptor", "norm", "matcher").n_unique()
     rows = f"{count(len(table), 'row')} of {count(combinations, 'combination')}"
     console.print(Text(f"\n{rows}; {_origin(settings)}"))
-    if machine := settings.get("machine", {}).get("name"):
+    for machine in table["machine"].drop_nulls().unique().sort():
         console.print(Text(machine))
     if models := len(found.reconstructions()):
         console.print(Text(f"{count(models, 'reconstruction')}, in the table reconstructions"))

@@ -20,6 +20,13 @@ MEGABYTES = 1024
 TIMED_PAIRS = 5
 
 
+class Engine(StrEnum):
+    """Values of ``--engine``."""
+
+    LOCAL = "local"
+    DASK = "dask"
+
+
 class Timing(StrEnum):
     """Values of ``--timing``."""
 
@@ -81,6 +88,15 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
     ] = None,
+    engine: Annotated[
+        Engine, typer.Option(help="Where: processes on this machine, or a Dask cluster.")
+    ] = Engine.LOCAL,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Of Dask, such as tcp://host:8786.")
+    ] = None,
+    resource: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only Dask workers that offer this resource.")
+    ] = None,
     timing: Annotated[
         Timing,
         typer.Option(
@@ -120,6 +136,7 @@ def run(
     Each result is kept as soon as it is there. Stop at any moment and run the same command again:
     what is finished is not measured twice.
     """
+    from aerocues.cli.cluster import engine_on
     from aerocues.cli.interruption import interruptible
     from aerocues.datasets.catalog import open_dataset
 
@@ -152,8 +169,11 @@ def run(
 
             print_plan(arguments)
             return
-        arguments |= {"limits": _limits(workers, timeout, memory_limit), "features": features}
-        _print_results(_measure(arguments), images.name, top)
+        limits = _limits(workers, timeout, memory_limit)
+        arguments |= {"limits": limits, "features": features}
+        with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
+            results = _measure({**arguments, "engine": chosen})
+        _print_results(results, images.name, top)
 
 
 def _limit(max_keypoints: int, spread: bool) -> KeypointLimit:
@@ -209,6 +229,7 @@ def _report_end(tally: Tally) -> None:
 def _print_results(results: Results, dataset: str, top: int) -> None:
     import polars as pl
 
+    from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
     from aerocues.cli.status import times_of
 
@@ -221,6 +242,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     folder = shlex.quote(str(results.folder))
     for line in (
         f"\nrows     {len(table):,}: {by_status}",
+        *machine_lines(table),
         f"times    {times_of(results.status())}",
         f"results  {results.folder}",
         f"next     aerocues status {folder}",

@@ -112,6 +112,10 @@ class FileSource:
         except ImageError:
             return False
 
+    def __getstate__(self) -> dict[str, object]:
+        """Without the hash: on another machine the file may be another one."""
+        return {name: value for name, value in vars(self).items() if name != "_content_key"}
+
     def content_key(self) -> str:
         """Hash of the bytes of the file and of the settings; ImageError if it cannot be read."""
         return self._content_key

@@ -7,9 +7,9 @@ from multiprocessing.connection import wait
 
 from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.giving_up import settle_loss
 from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.rows import failed_rows
-from aerocues.evaluation.unit import Context, StageCall, Unit, split
+from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.unit_queue import UnitQueue
 from aerocues.evaluation.worker_process import WorkerProcess
 
@@ -106,23 +106,7 @@ class WorkerPool:
     def _settle(self, worker: WorkerProcess, loss: Loss) -> tuple[Finished | None, list[Unit]]:
         unit = self._busy.pop(worker)
         worker.stop()
-        remaining, guilty = split(
-            unit, loss.call, certain=loss.status != "crashed", pairs=self._pairs_of(loss.call)
-        )
-        if guilty is None:
-            return None, remaining
-        rows = failed_rows(self._context, guilty, loss.status, loss.message)
-        return Finished(guilty, rows), remaining
-
-    def _pairs_of(self, call: StageCall | None) -> frozenset[int] | None:
-        """The pairs that need the features of one image; None where a call is about a pair."""
-        if call is None or call.stage not in ("detect", "describe"):
-            return None
-        return frozenset(
-            pair.index
-            for pair in self._context.dataset.pairs
-            if call.image in (pair.image_1, pair.image_2)
-        )
+        return settle_loss(self._context, unit, loss)
 
     def close(self) -> None:
         """End all workers."""

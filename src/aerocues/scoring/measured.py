@@ -52,12 +52,15 @@ class MeasuredTable:
         What its criteria were chosen by.
     seconds : mapping of str to float
         Median time of each combination for an image and a pair, where it is known.
+    machines : tuple of str
+        The kinds of machine that measured, where that is known.
     """
 
     dataset: str
     table: DecisionTable
     preset: ScorePreset
     seconds: Mapping[str, float]
+    machines: tuple[str, ...] = ()
 
 
 def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
@@ -129,7 +132,8 @@ def table_of(
     if not has_chance_test(rows):
         _refuse_chance(listed)
     table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
-    return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows))
+    machines = tuple(rows["machine"].drop_nulls().unique().sort())
+    return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows), machines)
 
 
 def _enough_models(rows: pl.DataFrame, models: pl.DataFrame) -> bool:

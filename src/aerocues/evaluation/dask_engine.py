@@ -1,0 +1,263 @@
+"""Units on the workers of a Dask cluster; the results folder stays with the program that asks."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import uuid
+from collections import deque
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from aerocues.errors import EngineError
+from aerocues.evaluation.child_process import Loss
+from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.giving_up import settle_loss
+from aerocues.evaluation.run import DEFAULT_TIMEOUT
+from aerocues.evaluation.unit import Context, StageCall, Unit
+
+if TYPE_CHECKING:
+    from distributed import Client, Future, KilledWorker
+
+    from aerocues.evaluation.dask_worker import Measured, Report, UnitMeasurer
+
+POLL_SECONDS = 0.1
+SECONDS_BETWEEN_COUNTS = 2.0
+# For results on their way: a worker that is lost with them makes Dask measure the unit again.
+RESULT_SECONDS = 10.0
+# Enough that no worker waits for the next unit, few enough that the cluster's memory stays free.
+UNITS_PER_THREAD = 2
+FEWEST_UNITS = 8
+RETRIES = 2
+LONGEST_SECONDS = 30.0
+AGAIN = "run the same command again: what is finished is kept"
+
+
+@dataclass(frozen=True)
+class DaskEngine:
+    """The workers of a Dask cluster, which may come and go.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        Of `dask_scheduler.connected`, or of any cluster that Dask knows, such as
+        ``dask_jobqueue.SLURMCluster``.
+    timeout : float
+        CPU seconds that one stage call may use, and wall seconds for which it may sit idle.
+    memory_limit_mb : int or None
+        Memory of the process that measures a unit; by default 80 % of what a thread of the Dask
+        worker has.
+    resource : str or None
+        Only workers that were started with this resource (``dask worker --resources NAME=1``)
+        get units: one kind of machine out of several.
+    longest_seconds : float
+        A worker sends the rows of a unit after so long, or when the pair that it is at is
+        finished; the rest of the unit goes to whichever worker is free.
+    """
+
+    client: Client
+    timeout: float = DEFAULT_TIMEOUT
+    memory_limit_mb: int | None = None
+    resource: str | None = None
+    longest_seconds: float = LONGEST_SECONDS
+
+    @property
+    def threads(self) -> int:
+        """Units that the workers which are there now measure at a time."""
+        return sum(self.client.nthreads().values())
+
+    @property
+    def dashboard(self) -> str | None:
+        """Where the scheduler shows what the cluster does; None where it has no dashboard."""
+        try:
+            link: str | None = self.client.dashboard_link
+        except KeyError:  # what distributed looks for in the scheduler's list of services
+            return None
+        return link
+
+    def run(
+        self, units: Sequence[Unit], context: Context, watch: Watch
+    ) -> Generator[Finished, None, None]:
+        """Run all units; see `Engine.run`.
+
+        Raises
+        ------
+        EngineError
+            If the scheduler is lost, or a worker has other versions or not the same images.
+        """
+        from aerocues.evaluation.dask_worker import UnitMeasurer
+
+        name = f"aerocues-{uuid.uuid4().hex[:12]}"
+        measurer = UnitMeasurer(
+            name, context, self.timeout, self.memory_limit_mb, self.longest_seconds
+        )
+        dispatch = _Dispatch(self, name, context, units)
+        try:
+            self._prepare_workers(measurer)
+            self.client.subscribe_topic(name, dispatch.hear)
+            yield from dispatch.run(watch)
+        finally:
+            with contextlib.suppress(OSError, RuntimeError, ValueError):
+                # A scheduler that is gone has nothing left to be told.
+                dispatch.cancel()
+                self.client.unsubscribe_topic(name)
+                self.client.unregister_worker_plugin(name)
+
+    def _prepare_workers(self, measurer: UnitMeasurer) -> None:
+        try:
+            self.client.register_plugin(measurer, name=measurer.name)
+        except ImportError as error:
+            raise EngineError(
+                f"the cluster lacks something that the run needs ({error}); install aerocues[dask] "
+                "and your plug-ins, at the versions that are here, on each of its machines"
+            ) from error
+        except OSError as error:
+            raise EngineError(f"a worker was lost as the run began ({error}); {AGAIN}") from error
+
+
+@dataclass(frozen=True)
+class _Heard:
+    """The latest report about a unit, and when it came."""
+
+    report: Report
+    time: float
+
+    @property
+    def call(self) -> StageCall | None:
+        call = self.report["call"]
+        return StageCall(**call) if call else None  # type: ignore[arg-type]
+
+
+class _Dispatch:
+    """Gives units to the cluster, a bounded number at a time, and takes back what became of them.
+
+    Parameters
+    ----------
+    engine : DaskEngine
+    name : str
+        Of the run.
+    context : Context
+    units : sequence of Unit
+    """
+
+    def __init__(
+        self, engine: DaskEngine, name: str, context: Context, units: Sequence[Unit]
+    ) -> None:
+        self._engine = engine
+        self._client = engine.client
+        self._resources = {engine.resource: 1} if engine.resource else None
+        self._name = name
+        self._context = context
+        self._queue = deque(units)
+        self._given: dict[str, tuple[Future[Measured], Unit]] = {}
+        self._heard: dict[str, _Heard] = {}
+        self._numbers: dict[str, int] = {}
+        self._count = 0
+        self._room = FEWEST_UNITS
+        self._counted = float("-inf")
+
+    def hear(self, event: tuple[float, Report]) -> None:
+        """Take the report of a worker."""
+        report = event[1]
+        if report["key"] not in self._given:
+            return  # it was on its way when the unit's rows came
+        self._numbers.setdefault(report["worker"], len(self._numbers))
+        self._heard[report["key"]] = _Heard(report, time.monotonic())
+
+    def run(self, watch: Watch) -> Iterator[Finished]:
+        """Run all units."""
+        while self._queue or self._given:
+            self._require_scheduler()
+            self._fill()
+            watch(self._activities())
+            ended = [key for key, (future, _) in self._given.items() if future.done()]
+            for key in ended:
+                yield from self._take(key)
+            if not ended:
+                time.sleep(POLL_SECONDS)
+
+    def cancel(self) -> None:
+        """Take back what is not finished."""
+        self._client.cancel([future for future, _ in self._given.values()])
+        self._given.clear()
+
+    def _require_scheduler(self) -> None:
+        if self._client.status != "running":
+            raise EngineError(f"the Dask scheduler is gone; start it and {AGAIN}")
+
+    def _fill(self) -> None:
+        from aerocues.evaluation.dask_worker import measure
+
+        now = time.monotonic()
+        if now - self._counted > SECONDS_BETWEEN_COUNTS:
+            self._counted = now
+            with contextlib.suppress(OSError):  # a scheduler that is gone is told elsewhere
+                self._room = max(UNITS_PER_THREAD * self._engine.threads, FEWEST_UNITS)
+        while self._queue and len(self._given) < self._room:
+            unit = self._queue.popleft()
+            key = f"{unit.detector}-{self._count}-{self._name}"
+            self._count += 1
+            future = self._client.submit(
+                measure,
+                self._name,
+                key,
+                unit,
+                key=key,
+                pure=False,
+                retries=RETRIES,
+                resources=self._resources,
+            )
+            self._given[key] = future, unit
+
+    def _activities(self) -> list[Activity]:
+        now = time.monotonic()
+        heard = [found for key in self._given if (found := self._heard.get(key))]
+        activities = [
+            Activity(
+                self._numbers[each.report["worker"]],
+                each.call,
+                each.report["seconds"] + now - each.time,
+            )
+            for each in heard
+        ]
+        return sorted(activities, key=lambda activity: activity.worker)
+
+    def _take(self, key: str) -> Iterator[Finished]:
+        """What became of a unit that Dask is done with; what has to be tried again is queued."""
+        from distributed import CancelledError, KilledWorker
+
+        future, unit = self._given[key]
+        try:
+            measured = future.result(timeout=RESULT_SECONDS)
+        except TimeoutError:
+            return  # it is measured once more
+        except CancelledError:
+            self._require_scheduler()
+            self._queue.appendleft(unit)  # somebody restarted the workers
+        except KilledWorker as error:
+            given_up, remaining = self._killed(key, unit, error)
+            self._queue.extendleft(reversed(remaining))
+            if given_up is not None:
+                yield given_up
+        else:
+            if measured.left is not None:
+                self._queue.appendleft(measured.left)
+            yield from measured.finished
+        del self._given[key]
+        self._heard.pop(key, None)
+
+    def _killed(
+        self, key: str, unit: Unit, error: KilledWorker
+    ) -> tuple[Finished | None, list[Unit]]:
+        """Divide a unit in which several Dask workers died, one after the other."""
+        heard = self._heard.get(key)
+        if heard is None or heard.report["worker"] != error.last_worker.address:
+            return None, [unit]  # it was only waiting there: another one did it
+        deaths = error.allowed_failures + 1
+        message = (
+            f"{deaths} Dask worker{'s' if deaths > 1 else ''} died in "
+            f"{heard.call or 'this pair'}, the last at {error.last_worker.address}"
+        )
+        context = replace(self._context, machine=heard.report["machine"])
+        return settle_loss(context, unit, Loss("crashed", message, heard.call))

@@ -1,0 +1,71 @@
+"""The way to a Dask scheduler by its address."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import socket
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+from aerocues.errors import EngineError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+CONNECT_SECONDS = 10.0
+
+
+@contextlib.contextmanager
+def connected(scheduler: str) -> Iterator[Client]:
+    """A client of the Dask scheduler at an address such as ``tcp://host:8786``.
+
+    Raises
+    ------
+    EngineError
+        If there is none, or ``distributed`` is not installed.
+    """
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise EngineError(
+            f"--engine dask needs a package that is not installed ({error}); "
+            "pip install 'aerocues[dask]'"
+        ) from error
+    try:
+        _knock(scheduler)
+        client = Client(scheduler, timeout=CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise EngineError(
+            f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
+            "the address that it prints, such as --scheduler tcp://HOST:8786"
+        ) from error
+    with client, _quiet():
+        yield client
+
+
+def _knock(scheduler: str) -> None:
+    """Try whether anything listens at an address; a client takes long to give a wrong one up.
+
+    Raises
+    ------
+    OSError, ValueError
+        If nothing does, or it is no address.
+    """
+    parts = urlsplit(scheduler if "://" in scheduler else f"tcp://{scheduler}")
+    if parts.scheme not in ("tcp", "tls") or not parts.hostname or not parts.port:
+        raise ValueError(scheduler)
+    socket.create_connection((parts.hostname, parts.port), CONNECT_SECONDS).close()
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the client from logging what becomes an error of ours."""
+    logger = logging.getLogger("distributed.client")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)

@@ -1,0 +1,282 @@
+"""What a Dask worker does for a run: it measures units in worker processes of its own.
+
+A method that crashes, hangs or takes too much memory so costs the same as on one machine, and
+never the Dask worker.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TypedDict
+
+import psutil
+from distributed import Worker, WorkerPlugin, get_worker
+
+from aerocues.errors import EngineError, ImageError
+from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.unit import Context, Unit
+from aerocues.evaluation.versions import machine_name, software_versions
+from aerocues.evaluation.worker_pool import WorkerPool
+
+SAME_VERSIONS = ("aerocues", "opencv")
+# A process is kept for the next unit, and what it holds is given back when none comes.
+IDLE_SECONDS = 60.0
+SECONDS_BETWEEN_REPORTS = 1.0
+SECONDS_BETWEEN_TRIES = 0.1
+# Of the memory of a Dask worker; the rest is for the worker itself.
+MEMORY_SHARE = 0.8
+
+
+class Report(TypedDict):
+    """What a worker says about a unit now and then: the call that it is in, as a dictionary."""
+
+    key: str
+    worker: str
+    machine: str
+    call: dict[str, object] | None
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The pairs of a unit that are finished, and what is left of it."""
+
+    finished: list[Finished]
+    left: Unit | None
+
+
+class UnitMeasurer(WorkerPlugin):
+    """Is with each worker of a cluster, also with those that come late, as long as a run lasts.
+
+    Parameters
+    ----------
+    name : str
+        Of the run; reports go to the topic of this name.
+    context : Context
+    timeout : float
+        See `LocalEngine`.
+    memory_limit_mb : int or None
+        Memory of one process; a share of the Dask worker's by default.
+    longest_seconds : float
+        No further pair of a unit is begun then; what is left of it goes back to the run.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        context: Context,
+        timeout: float,
+        memory_limit_mb: int | None,
+        longest_seconds: float,
+    ) -> None:
+        self.name = name
+        self._context = context
+        self._timeout = timeout
+        self._memory_limit_mb = memory_limit_mb
+        self._longest_seconds = longest_seconds
+        self._versions = software_versions()
+        self._image_keys = {
+            image.name: image.source.content_key() for image in context.dataset.images
+        }
+
+    def setup(self, worker: Worker) -> None:
+        self._worker = worker
+        folder = self._context.features
+        self._context = replace(
+            self._context,
+            machine=machine_name(),
+            features=folder if folder and folder.is_dir() else None,  # it may not be shared
+        )
+        self._memory = self._memory_limit_mb or _memory_of(worker)
+        self._different = _different_versions(self._versions)
+        self._checked: set[str] = set()
+        self._ending = threading.Event()
+        self._lock = threading.Lock()
+        self._idle: list[WorkerPool] = []
+        self._countdown = threading.Timer(0.0, self._end_idle)
+
+    def teardown(self, worker: Worker) -> None:
+        self._ending.set()
+        self._end_idle()
+
+    def measure(self, key: str, unit: Unit) -> Measured:
+        """Measure a unit, or as many of its pairs as may be begun at a time.
+
+        Raises
+        ------
+        EngineError
+            If this worker has other versions or images, or cannot start a process.
+        """
+        if self._different:
+            raise EngineError(
+                f"the worker {self._worker.address} has {self._different}; install the "
+                "same versions on all machines of the cluster"
+            )
+        with self._turn():
+            self._check_images(unit)
+            with self._pool() as pool:
+                return self._measure_pairs(pool, unit, _Reporter(self._worker, self, key))
+
+    def _measure_pairs(self, pool: WorkerPool, unit: Unit, watch: Watch) -> Measured:
+        finished: list[Finished] = []
+        end = time.monotonic() + self._longest_seconds
+        while True:
+            pair, unit = unit.parts(1)  # the process keeps the features for the next pair
+            finished += pool.run([pair], watch)
+            if not unit.work or time.monotonic() >= end:
+                return Measured(finished, unit if unit.work else None)
+
+    def check(self) -> None:
+        """End what is under way when the run is over.
+
+        Raises
+        ------
+        EngineError
+        """
+        if self._ending.is_set():
+            raise EngineError("the run is over; nothing is left to do here")
+
+    @property
+    def machine(self) -> str:
+        return self._context.machine
+
+    @contextlib.contextmanager
+    def _turn(self) -> Iterator[None]:
+        """Wait until nothing else is measured on this machine, where the times are to be such."""
+        if self._context.protocol.timing != "exclusive":
+            yield
+            return
+        import fcntl
+
+        path = Path(tempfile.gettempdir()) / f"aerocues-exclusive-{os.getuid()}.lock"
+        with path.open("w") as file:
+            while True:
+                self.check()
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    break
+                except BlockingIOError:
+                    time.sleep(SECONDS_BETWEEN_TRIES)
+            yield
+
+    @contextlib.contextmanager
+    def _pool(self) -> Iterator[WorkerPool]:
+        """A process that is idle, or a new one; a Dask worker with several threads has several."""
+        with self._lock:
+            self._countdown.cancel()
+            idle = self._idle.pop() if self._idle else None
+        pool = idle or WorkerPool(self._context, 1, self._timeout, self._memory)
+        try:
+            yield pool
+        except BaseException:
+            pool.close()
+            raise
+        with self._lock:
+            self._idle.append(pool)
+            self._countdown.cancel()
+            self._countdown = threading.Timer(IDLE_SECONDS, self._end_idle)
+            self._countdown.daemon = True
+            self._countdown.start()
+        if self._ending.is_set():
+            self._end_idle()
+
+    def _end_idle(self) -> None:
+        with self._lock:
+            self._countdown.cancel()
+            while self._idle:
+                self._idle.pop().close()
+
+    def _check_images(self, unit: Unit) -> None:
+        """Make sure that the images of a unit are those that the run was planned for.
+
+        Raises
+        ------
+        EngineError
+        """
+        pairs = [self._context.dataset.pair(work.pair) for work in unit.work]
+        names = {name for pair in pairs for name in (pair.image_1, pair.image_2)}
+        for name in sorted(names - self._checked):
+            try:
+                same = (
+                    self._context.dataset.image(name).source.content_key() == self._image_keys[name]
+                )
+            except ImageError as error:
+                raise EngineError(
+                    f"the worker {self._worker.address} cannot read an image that the run has: "
+                    f"{error}; mount the folder of the images there under the same path"
+                ) from error
+            if not same:
+                raise EngineError(
+                    f"the worker {self._worker.address} has another image {name} than the run; "
+                    "mount the folder of the images there under the same path"
+                )
+            self._checked.add(name)
+
+
+class _Reporter:
+    """Tells the run what the process of a unit is doing, and the process when the run is over."""
+
+    def __init__(self, worker: Worker, measurer: UnitMeasurer, key: str) -> None:
+        self._worker = worker
+        self._measurer = measurer
+        self._key = key
+        self._told = float("-inf")
+        self._has_called = False
+
+    def __call__(self, activities: Sequence[Activity]) -> None:
+        self._measurer.check()
+        if not activities:
+            return
+        activity = activities[0]
+        now = time.monotonic()
+        is_first_call = activity.call is not None and not self._has_called
+        if now - self._told < SECONDS_BETWEEN_REPORTS and not is_first_call:
+            return
+        self._told = now
+        self._has_called |= is_first_call
+        report = Report(
+            key=self._key,
+            worker=self._worker.address,
+            machine=self._measurer.machine,
+            call=asdict(activity.call) if activity.call else None,
+            seconds=activity.seconds,
+        )
+        self._worker.log_event(self._measurer.name, report)
+
+
+def measure(name: str, key: str, unit: Unit) -> Measured:
+    """The task: measure a unit of the run called `name` on the worker that this is called on."""
+    measurer = get_worker().plugins.get(name)
+    if not isinstance(measurer, UnitMeasurer):
+        raise EngineError(
+            f"the worker {get_worker().address} does not know the run; run the same command again"
+        )
+    return measurer.measure(key, unit)
+
+
+def _memory_of(worker: Worker) -> int:
+    """MB for one process: of what the Dask worker may use, or its cores' share of the machine."""
+    threads = worker.state.nthreads
+    total = psutil.virtual_memory().total
+    share = int(total * min(1.0, threads / (os.cpu_count() or 1)))
+    return int(MEMORY_SHARE * (worker.memory_manager.memory_limit or share) / threads / 2**20)
+
+
+def _different_versions(wanted: Mapping[str, str]) -> str:
+    """Versions here that would give other rows, against those of the run; empty if there are none.
+
+    Rows are known by the versions of the run: others must not be mixed with them.
+    """
+    here = software_versions()
+    return " and ".join(
+        f"{name} {here.get(name)}, the run {wanted.get(name)}"
+        for name in SAME_VERSIONS
+        if here.get(name) != wanted.get(name)
+    )

@@ -1,0 +1,39 @@
+"""What becomes of a unit whose process or machine was lost."""
+
+from __future__ import annotations
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.evaluation.child_process import Loss
+from aerocues.evaluation.engine import Finished
+from aerocues.evaluation.rows import failed_rows
+from aerocues.evaluation.unit import Context, StageCall, Unit, split
+
+
+def settle_loss(context: Context, unit: Unit, loss: Loss) -> tuple[Finished | None, list[Unit]]:
+    """Divide a unit that was lost into what is given up and what is tried again.
+
+    Returns
+    -------
+    given_up : Finished or None
+        The rows of what `loss` is to blame on, if that is certain.
+    remaining : list of Unit
+        What is to be tried again, each in a process of its own.
+    """
+    remaining, guilty = split(
+        unit,
+        loss.call,
+        certain=loss.status != "crashed",
+        pairs=_pairs_of(context.dataset, loss.call),
+    )
+    if guilty is None:
+        return None, remaining
+    return Finished(guilty, failed_rows(context, guilty, loss.status, loss.message)), remaining
+
+
+def _pairs_of(dataset: Dataset, call: StageCall | None) -> frozenset[int] | None:
+    """The pairs that need the features of one image; None where a call is about a pair."""
+    if call is None or call.stage not in ("detect", "describe"):
+        return None
+    return frozenset(
+        pair.index for pair in dataset.pairs if call.image in (pair.image_1, pair.image_2)
+    )

@@ -1,0 +1,290 @@
+"""Units on a Dask cluster of separate processes: the same rows, whatever becomes of workers."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import psutil
+import pytest
+
+pytest.importorskip("distributed")
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import EngineError
+from aerocues.evaluation import dask_worker
+from aerocues.evaluation import run as running
+from aerocues.evaluation.dask_engine import DaskEngine
+from aerocues.evaluation.dask_scheduler import connected
+from aerocues.evaluation.engine import Activity, Finished
+from aerocues.evaluation.plan import Plan
+from aerocues.evaluation.protocol import Timing
+from aerocues.evaluation.results import Results
+from aerocues.evaluation.run import Limits, Observer
+from aerocues.evaluation.store import Store
+from aerocues.evaluation.versions import software_versions
+from tests.evaluation.cluster import Cluster
+from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
+from tests.methods.distribution import write_distribution
+
+# One pass over all pairs, on all workers at once.
+run = functools.partial(running.run, timing="shared")
+FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
+MANY = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,BRISK-BRISK-HAM-BF"
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    """A scheduler that has no worker yet."""
+    made = Cluster(tmp_path)
+    try:
+        made.start()
+        yield made
+    finally:
+        made.stop()
+    wait_until(lambda: not workers_of(str(tmp_path)))
+
+
+def wait_until(done: Callable[[], bool], seconds: float = 60) -> None:
+    end = time.monotonic() + seconds
+    while not done():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+class During(Observer):
+    """Calls a function once when `rows` rows are there and a worker is at work."""
+
+    def __init__(self, action: Callable[[], None], rows: int = 1) -> None:
+        self.action: Callable[[], None] | None = action
+        self.left = rows
+        self.seen: set[str] = set()
+
+    def finished(self, finished: Finished) -> None:
+        self.left -= len(finished.rows)
+
+    def working(self, activities: Sequence[Activity]) -> None:
+        self.seen |= {activity.call.stage for activity in activities if activity.call}
+        if self.action and self.left <= 0 and activities:
+            action, self.action = self.action, None
+            action()
+
+
+def test_rows_equal_those_of_the_local_engine(
+    cluster: Cluster, views: Dataset, tmp_path: Path
+) -> None:
+    cluster.add_worker()
+    cluster.add_worker()
+    with connected(cluster.address) as client:
+        assert DaskEngine(client).dashboard
+        results = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
+        again = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
+    local = run(views, FEW, tmp_path / "local", limits=Limits(workers=1))
+    assert_same_rows(rows_of(results.table()), rows_of(local.table()))
+    assert len(Store(again.folder).rows()) == len(local.table())
+    assert results.table()["machine"].to_list() == local.table()["machine"].to_list()
+
+
+def test_rows_of_long_units_come_pair_by_pair(
+    cluster: Cluster, views: Dataset, tmp_path: Path
+) -> None:
+    cluster.add_worker()
+    with connected(cluster.address) as client:
+        engine = DaskEngine(client, longest_seconds=0)
+        results = run(views, FEW, tmp_path / "dask", engine=engine)
+    local = run(views, FEW, tmp_path / "local", engine=InlineEngine())
+    assert_same_rows(rows_of(results.table()), rows_of(local.table()))
+
+
+def test_workers_that_die_and_one_that_comes_late(cluster: Cluster, tmp_path: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(12))
+    first = [cluster.add_worker() for _ in range(3)]
+    with connected(cluster.address) as client:
+        client.wait_for_workers(3)
+
+        def kill_one_and_add_one() -> None:
+            first[0].send_signal(signal.SIGKILL)
+            cluster.add_worker()
+            wait_until(lambda: len(client.nthreads()) == 3)
+            # The late one has to do the rest.
+            for worker in first[1:]:
+                worker.send_signal(signal.SIGKILL)
+
+        observer = During(kill_one_and_add_one)
+        results = run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), observer=observer)
+    assert observer.action is None
+    assert observer.seen
+    undisturbed = run(dataset, MANY, tmp_path / "u", engine=InlineEngine())
+    assert_same_rows(rows_of(results.table()), rows_of(undisturbed.table()))
+
+
+def test_an_interruption_keeps_what_was_finished_and_ends_processes(
+    cluster: Cluster, tmp_path: Path
+) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(12))
+    cluster.add_worker()
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    with connected(cluster.address) as client:
+        engine = DaskEngine(client, longest_seconds=0)
+        with pytest.raises(KeyboardInterrupt):
+            run(dataset, MANY, tmp_path / "r", engine=engine, observer=During(interrupt))
+        wait_until(lambda: not workers_of(str(tmp_path)))
+        kept = Results(tmp_path / "r").status()
+        assert 0 < kept.planned - kept.left < kept.planned
+        results = run(dataset, MANY, tmp_path / "r", engine=engine)
+    undisturbed = run(dataset, MANY, tmp_path / "u", engine=InlineEngine())
+    assert_same_rows(rows_of(results.table()), rows_of(undisturbed.table()))
+
+
+def test_a_lost_scheduler_is_an_error(cluster: Cluster, tmp_path: Path) -> None:
+    dataset = write_dataset(tmp_path / "images", strip(12))
+    cluster.add_worker()
+    observer = During(cluster.kill_scheduler)
+    with (
+        connected(cluster.address) as client,
+        pytest.raises(EngineError, match=r"scheduler is gone; start it and run the same command"),
+    ):
+        run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), observer=observer)
+    assert len(Results(tmp_path / "r").table())
+
+
+@pytest.fixture
+def faulty(cluster: Cluster, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Dataset:
+    """Five views; methods that some of the tests install go wrong on the third."""
+    faults = ["SEGFAULT", "SLEEP", "FAIL", "KILL_PARENT"]
+    write_distribution(tmp_path / "site", "faults", entry_points(faults), {})
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    pictures = strip(5)
+    mark(pictures["view_2.png"])
+    return write_dataset(tmp_path / "images", pictures)
+
+
+def test_faults_are_recorded_as_by_the_local_engine(
+    cluster: Cluster, faulty: Dataset, tmp_path: Path
+) -> None:
+    cluster.add_worker()
+    dataset = dataclasses.replace(faulty, pairs=faulty.pairs[:2])
+    combinations = "SEGFAULT-ORB-HAM-BF,ORB-D_SLEEP-HAM-BF,FAIL-ORB-HAM-BF,ORB-ORB-HAM-*"
+    with connected(cluster.address) as client:
+        engine = DaskEngine(client, timeout=2, memory_limit_mb=700)
+        results = run(dataset, combinations, tmp_path / "dask", engine=engine)
+    limits = Limits(workers=1, timeout=2, memory_limit_mb=700)
+    local = run(dataset, combinations, tmp_path / "local", limits=limits)
+    assert {"crashed", "timeout", "error", "ok"} <= set(local.table()["status"])
+    assert_same_rows(rows_of(results.table()), rows_of(local.table()))
+
+
+def test_what_takes_workers_down_is_named(
+    cluster: Cluster, faulty: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = Cluster(tmp_path / "strict", {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"})
+    other.folder.mkdir()
+    combinations = "KILL_PARENT-ORB-HAM-BF,ORB-ORB-HAM-BF"
+    try:
+        other.start()
+        for _ in range(2):
+            other.add_worker("--nanny")
+        with connected(other.address) as client:
+            rows = rows_of(
+                run(faulty, combinations, tmp_path / "dask", engine=DaskEngine(client)).table()
+            )
+    finally:
+        other.stop()
+    monkeypatch.setenv(HEALTHY, "1")
+    healthy = run(faulty, combinations, tmp_path / "healthy", engine=InlineEngine())
+    expected = rows_of(healthy.table())
+    guilty = {n for n, r in rows.items() if r["detector"] == "KILL_PARENT" and r["pair"] in (1, 2)}
+    for name in guilty:
+        assert rows[name]["status"] == "crashed"
+        assert "2 Dask workers died in" in str(rows[name]["message"])
+    assert_same_rows(
+        {name: row for name, row in rows.items() if name not in guilty},
+        {name: row for name, row in expected.items() if name not in guilty},
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (Path.unlink, r"cannot read an image that the run has: .*; mount the folder"),
+        (lambda path: path.write_bytes(b"other"), r"has another image view_1\.png than the run"),
+    ],
+)
+def test_a_worker_without_the_images_is_an_error(
+    cluster: Cluster, tmp_path: Path, change: Callable[[Path], object], words: str
+) -> None:
+    """The file changes after it was read here, as if it were never like that at the worker."""
+    dataset = write_dataset(tmp_path / "images", strip(2))
+    cluster.add_worker()
+
+    class Changing(Observer):
+        def planned(self, plan: Plan, timing: Timing) -> None:
+            change(tmp_path / "images" / "view_1.png")
+
+    with (
+        connected(cluster.address) as client,
+        pytest.raises(EngineError, match=words),
+    ):
+        run(dataset, FEW, tmp_path / "r", engine=DaskEngine(client), observer=Changing())
+
+
+def test_a_worker_with_other_versions_is_an_error(
+    cluster: Cluster, views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cluster.add_worker()
+    versions = software_versions() | {"opencv": "4.0"}
+    monkeypatch.setattr(dask_worker, "software_versions", lambda: versions)
+    with (
+        connected(cluster.address) as client,
+        pytest.raises(EngineError, match=r"has opencv .*, the run 4\.0; install the same"),
+    ):
+        run(views, FEW, tmp_path / "r", engine=DaskEngine(client))
+
+
+def test_exclusive_times_of_one_machine_are_taken_one_at_a_time(
+    cluster: Cluster, views: Dataset, tmp_path: Path
+) -> None:
+    cluster.add_worker()
+    cluster.add_worker()
+    with connected(cluster.address) as client:
+        client.wait_for_workers(2)
+        engine = DaskEngine(client)
+        combinations = f"{FEW},KAZE-KAZE-L2-BF,BRISK-BRISK-HAM-BF,AKAZE-AKAZE-HAM-BF"
+        table = run(views, combinations, tmp_path / "r", timing="exclusive", engine=engine).table()
+    assert set(table["timing"]) == {"exclusive"}
+    assert table["peak_memory_mb"].null_count() < len(table)
+    # Each detector was a unit: the times at which its rows were begun lie together.
+    times = table.sort("measured_at")["detector"].rle()
+    assert len(times) == table["detector"].n_unique()
+
+
+def test_only_workers_with_the_resource_are_used(
+    cluster: Cluster, views: Dataset, tmp_path: Path
+) -> None:
+    plain = cluster.add_worker()
+    used: list[psutil.Process] = []
+
+    class AddingOne(Observer):
+        def working(self, activities: Sequence[Activity]) -> None:
+            if len(cluster.workers) == 1:
+                cluster.add_worker("--no-nanny", "--resources", "board=1")
+
+        def finished(self, finished: Finished) -> None:
+            used.extend(psutil.Process(plain.pid).children())
+
+    with connected(cluster.address) as client:
+        client.wait_for_workers(1)
+        engine = DaskEngine(client, resource="board")
+        results = run(views, FEW, tmp_path / "r", engine=engine, observer=AddingOne())
+    assert len(results.table()) == 9
+    assert used == []
