@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint
@@ -10,6 +11,9 @@ from typing import Any, get_args
 
 from aerocues.methods.descriptors import DescriptorType
 from aerocues.methods.parameters import Value
+
+# What Python asks of an entry point; versions of it differ in how they refuse others.
+REFERENCE = re.compile(r"[\w.]+\s*(:\s*[\w.]+\s*)?(\[.*\]\s*)?")
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,10 @@ class _UnfitError(Exception):
 
 def read_declaration(entry: EntryPoint, group: str) -> Declaration:
     """Load a plug-in of a group, such as ``matchers``, and read what it says about itself."""
+    if not REFERENCE.fullmatch(entry.value):
+        return Declaration(
+            problem=f"{entry.value} does not exist; an entry point is such as 'package.module:name'"
+        )
     try:
         factory = entry.load()
         return Declaration(
