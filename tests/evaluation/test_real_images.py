@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -21,7 +22,9 @@ from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.methods.registry import opencv_methods
+from aerocues.methods.strongest import KeypointLimit
 from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import assert_same_rows, rows_of
 from tests.methods.pictures import textured
 
 pytestmark = pytest.mark.timeout(600)
@@ -44,6 +47,20 @@ def test_sift_on_graf_is_right_by_the_truth(graf: Dataset, tmp_path: Path) -> No
     assert row["homography_error"] < 3
     assert row["precision"] > 0.7
     assert abs(row["precision_beyond_chance"] - row["gt_precision@3"]) < 0.15
+
+
+@pytest.mark.slow
+def test_exact_search_changes_no_row_of_any_combination(graf: Dataset, tmp_path: Path) -> None:
+    near = Dataset(graf.name, graf.images, graf.pairs[:1], graf.geometry)
+    # TBMR differs from call to call.
+    words: dict[str, Any] = {"combinations": "*,!TBMR-*", "limit": KeypointLimit(800)}
+    tables = [
+        run(near, output=tmp_path / timing, timing=timing, features=tmp_path / "kept", **words)
+        for timing in ("shared", "estimated")
+    ]
+    shared, estimated = (rows_of(results.table()) for results in tables)
+    assert len(shared) > 300
+    assert_same_rows(estimated, shared)
 
 
 def both(pair: Pair, dataset: Dataset, text: str) -> tuple[list[Keypoints], list[Features]]:
