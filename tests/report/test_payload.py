@@ -81,6 +81,27 @@ def test_scores_are_those_of_the_ranking(
         assert sum(score["weights"]["values"][method]) == pytest.approx(1, abs=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("kinds", "told"),
+    [
+        (["exclusive"], "exclusive"),
+        (["exclusive", "scaled"], "sampled"),
+        (["exclusive", "scaled", "shared"], "mixed"),
+        (["shared", "exclusive"], "mixed"),
+        ([None], "unknown"),
+    ],
+)
+def test_the_page_is_told_where_times_come_from(
+    tmp_path: Path, kinds: list[str | None], told: str
+) -> None:
+    rows = measured(pairs=4)
+    for number, each in enumerate(rows):
+        each["timing"] = kinds[number % len(kinds)]
+    results = folder_of(rows, tmp_path / "results")
+    [found] = payload_of(report_entries([results], resamples=50), "title")["entries"]
+    assert found["timing"] == told
+
+
 def test_special_choices_are_named(entry: dict[str, Any]) -> None:
     score = entry["score"]
     assert entry["norm"][score["best_binary"]] == "HAM"

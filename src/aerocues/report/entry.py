@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from aerocues.evaluation.medians import combination_medians
+from aerocues.evaluation.scaled_times import SCALED
 from aerocues.evaluation.statuses import STATUSES
 from aerocues.report.arrays import packed_bytes
 from aerocues.report.columns import column_facts, matrix_positions
@@ -149,10 +150,13 @@ def _run(settings: Mapping[str, Any], pairs: Sequence[Mapping[str, Any]]) -> dic
 
 
 def _timing(rows: pl.DataFrame) -> str:
-    kinds = rows["timing"].unique().to_list()
-    if kinds == [None]:
+    """Where times come from; ``sampled`` where some pairs were timed alone and scale the others."""
+    kinds = set(rows["timing"].to_list())
+    if kinds == {None}:
         return "unknown"
-    return str(kinds[0]) if len(kinds) == 1 else "mixed"
+    if kinds == {"exclusive", SCALED}:
+        return "sampled"
+    return str(kinds.pop()) if len(kinds) == 1 else "mixed"
 
 
 def _status_matrix(rows: pl.DataFrame, positions: Any, shape: tuple[int, int]) -> dict[str, Any]:

@@ -70,6 +70,9 @@ function resamples(entry) {
 function factsSentence(entry) {
   const timing = {
     exclusive: "times were taken with a core to themselves",
+    sampled: "times of some pairs were taken with a core to themselves, and scale those of the others",
+    scaled: "times are scaled by those of other pairs, taken with a core to themselves",
+    estimated: "times were taken while other measurements ran beside, and brute force was timed on a part",
     shared: "times were taken while other measurements ran beside, so they are somewhat too long",
     mixed: "some times were taken while other measurements ran beside",
   }[entry.timing];
