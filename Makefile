@@ -50,7 +50,7 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 
 demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (under 3 minutes)
 	$(BIN)/aerocues simulate --survey mini --size 700x466 -o $(DEMO_FLIGHT)
-	$(BIN)/aerocues run simulated:$(DEMO_FLIGHT) -o $(DEMO_RESULTS) --combinations "$(DEMO_COMBINATIONS)"
+	$(BIN)/aerocues run simulated:$(DEMO_FLIGHT) -o $(DEMO_RESULTS) --timing-pairs 2 --combinations "$(DEMO_COMBINATIONS)"
 	$(BIN)/aerocues reconstruct simulated:$(DEMO_FLIGHT) -o $(DEMO_MODELS) --from $(DEMO_RESULTS) --top 3
 	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)
 

@@ -25,7 +25,7 @@ COMBINATIONS = "ORB-ORB-HAM-BF,SIFT-SIFT-L2-BF,ORB-BRIEF-HAM-FLANN"
 def test_estimated_times_leave_everything_else_as_it_is(
     views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(brute_force_time, "TIMED_PAIRS", 2000)
+    monkeypatch.setattr(brute_force_time, "FEWEST_TIMED", 2000)
     engine = InlineEngine()
     shared = run(views, COMBINATIONS, tmp_path / "s", engine=engine)
     estimated = run(views, COMBINATIONS, tmp_path / "e", engine=engine, timing="estimated")
@@ -61,12 +61,17 @@ def test_all_is_timed_where_it_is_little_and_a_part_is_scaled(
     monkeypatch.setattr(type(stage), "call", _counting(type(stage).call, asked))
     sampled = SampledBruteForce(stage, "HAM", Clock())
     assert sampled.match(first, second)[0].indices.tolist() == whole.indices.tolist()
-    monkeypatch.setattr(brute_force_time, "TIMED_PAIRS", 400 * 30)
+    monkeypatch.setattr(brute_force_time, "FEWEST_TIMED", 400 * 30)
     matches, time = sampled.match(first, second)
     assert matches.indices.tolist() == whole.indices.tolist()
     assert matches.distance.tobytes() == whole.distance.tobytes()
     assert asked == [300, 30]
     assert time.cpu > 0
+    monkeypatch.setattr(brute_force_time, "TIMED_SHARE", 0.5)
+    sampled.match(first, second)
+    monkeypatch.setattr(brute_force_time, "MOST_TIMED", 400 * 40)
+    sampled.match(first, second)
+    assert asked[2:] == [150, 40]
 
 
 def _counting(call: object, asked: list[int]) -> object:

@@ -15,8 +15,10 @@ from aerocues.evaluation.clock import Clock, StageTime
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.making import MatcherStage
 
-# About 0.03 s (bits) to 0.2 s (200 numbers) each: enough for a time that repeats within 5 %.
-TIMED_PAIRS = 2_000_000
+# A fortieth of all pairs of descriptors, which takes about as long as exact search; but not so few
+# that the time says nothing, and not more than 0.03 s (bits) to 0.2 s (200 numbers) each.
+TIMED_SHARE = 1 / 40
+FEWEST_TIMED, MOST_TIMED = 200_000, 2_000_000
 FEWEST_ROWS = 16
 
 
@@ -37,7 +39,8 @@ class SampledBruteForce:
 
     def match(self, first: Features, second: Features) -> tuple[Matches, StageTime]:
         """All matches, and the time that brute force would take for them."""
-        rows = max(TIMED_PAIRS // max(len(first), 1), FEWEST_ROWS)
+        timed = min(max(TIMED_SHARE * len(first) * len(second), FEWEST_TIMED), MOST_TIMED)
+        rows = max(int(timed) // max(len(first), 1), FEWEST_ROWS)
         if rows >= len(second):
             raw, time = self.clock.time(lambda: self.brute_force.call(first, second))
             return self.brute_force.read(raw), time
