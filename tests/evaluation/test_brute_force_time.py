@@ -60,6 +60,7 @@ def test_all_is_timed_where_it_is_little_and_a_part_is_scaled(
     asked: list[int] = []
     monkeypatch.setattr(type(stage), "call", _counting(type(stage).call, asked))
     sampled = SampledBruteForce(stage, "HAM", Clock())
+    monkeypatch.setattr(brute_force_time, "FEWEST_TIMED", 400 * 300)
     assert sampled.match(first, second)[0].indices.tolist() == whole.indices.tolist()
     monkeypatch.setattr(brute_force_time, "FEWEST_TIMED", 400 * 30)
     matches, time = sampled.match(first, second)

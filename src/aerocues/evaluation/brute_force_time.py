@@ -18,7 +18,7 @@ from aerocues.methods.making import MatcherStage
 # A fortieth of all pairs of descriptors, which takes about as long as exact search; but not so few
 # that the time says nothing, and not more than 0.03 s (bits) to 0.2 s (200 numbers) each.
 TIMED_SHARE = 1 / 40
-FEWEST_TIMED, MOST_TIMED = 200_000, 2_000_000
+FEWEST_TIMED, MOST_TIMED = 50_000, 2_000_000
 FEWEST_ROWS = 16
 
 
