@@ -142,9 +142,9 @@ def row(number: int, timing: str, seconds: float, **known: Any) -> dict[str, Any
 
 def scaled(rows: list[dict[str, Any]], best: list[dict[str, Any]]) -> list[dict[str, Any]]:
     measured, chosen = (
-        pl.LazyFrame(each, schema=polars_schema(), orient="row") for each in (rows, best)
+        pl.DataFrame(each, schema=polars_schema(), orient="row") for each in (rows, best)
     )
-    return with_scaled_times(chosen, measured).collect().to_dicts()
+    return with_scaled_times(chosen, measured).to_dicts()
 
 
 def test_times_are_scaled_by_what_the_timed_pairs_took_alone() -> None:

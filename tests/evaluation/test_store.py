@@ -11,6 +11,7 @@ import pytest
 from aerocues.errors import StoreError
 from aerocues.evaluation.planned_rows import IDENTITY_NAMES
 from aerocues.evaluation.results import Results
+from aerocues.evaluation.row_files import RowFiles
 from aerocues.evaluation.schema import COLUMNS, empty_row, polars_schema
 from aerocues.evaluation.store import Store
 
@@ -273,3 +274,70 @@ def test_sql_answers_and_explains_itself(store: Store) -> None:
     for query in ("SELEC", "SELECT nothing FROM results", "SELECT * FROM rows"):
         with pytest.raises(StoreError, match="the table is called results"):
             results.sql(query)
+
+
+def write_many(store: Store, count: int) -> list[dict[str, Any]]:
+    """A file for each of so many rows."""
+    rows = [row(n, matches=n, measured_at=float(n)) for n in range(count)]
+    store.write_plan(planned(rows))
+    for each in rows:
+        store.write_rows(f"{each['pair']:05d}", [each])
+    return rows
+
+
+def test_very_many_small_files_are_put_together(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("aerocues.evaluation.row_files.MANY_FILES", 10)
+    rows = write_many(store, 25)
+    before = store.table()
+    with store.writing():
+        assert len(store.parts()) == 7  # two of ten rows, and five that are not enough
+        store.write_rows("again", [row(3, matches=99, measured_at=99.0)])
+    assert (
+        store.table().drop("matches", "measured_at").equals(before.drop("matches", "measured_at"))
+    )
+    assert dict(store.table().select("pair", "matches").iter_rows())[3] == 99
+    assert store.present("shared", retry_failed=False) == {each["row_key"] for each in rows}
+    with store.writing():
+        for number in range(4):
+            store.write_rows(f"more-{number}", [row(number, matches=100, measured_at=100.0)])
+    assert len(store.parts()) == 3
+    assert store.table()["matches"].to_list() == [100] * 4 + list(range(4, 25))
+
+
+def test_files_that_are_put_together_meanwhile_are_read_all_the_same(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("aerocues.evaluation.row_files.MANY_FILES", 10)
+    write_many(store, 20)
+    expected = store.table()
+    listed = RowFiles.files
+    stale = listed(RowFiles(store.folder / "parts"))
+    with Store.create(store.folder).writing():
+        pass
+    answers = [stale]  # what was there before the other process began
+    monkeypatch.setattr(RowFiles, "files", lambda self: answers.pop() if answers else listed(self))
+    assert store.table().equals(expected)
+
+
+def test_an_interrupted_putting_together_loses_and_doubles_nothing(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("aerocues.evaluation.row_files.MANY_FILES", 10)
+    write_many(store, 20)
+    expected = store.table()
+
+    def interrupted(self: Path, **_: object) -> None:
+        if self.suffix == ".parquet":
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "unlink", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            store.writing().__enter__()
+    assert len(store.parts()) == 21
+    assert store.table().equals(expected)
+    with store.writing():
+        assert len(store.parts()) == 2
+    assert store.table().equals(expected)

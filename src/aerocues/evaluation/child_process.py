@@ -22,6 +22,9 @@ from aerocues.evaluation.unit import StageCall
 
 START_SECONDS = 120.0
 LAST_WORDS = 300
+# Products of matrices would otherwise take every core in every process, and the times of one thread
+# would hide it.
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 # A process that computes uses far more of the wall time than this, on any crowded machine.
 IDLE_SHARE = 0.01
 
@@ -85,6 +88,7 @@ class ChildProcess:
             # Whatever the parent can import, plug-ins above all; "" stands for where it is now.
             env={
                 **os.environ,
+                **ONE_THREAD,
                 "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path),
             },
         )

@@ -16,48 +16,64 @@ if TYPE_CHECKING:
 
 SCALED = "scaled"
 _GROUP = ("machine", "detector", "descriptor", "norm", "matcher")
-_COLUMNS = {
+_STAGES = {
     **{stage: (f"{stage}_seconds_1", f"{stage}_seconds_2") for stage in STAGES_OF_IMAGES},
     **{stage: (f"{stage}_seconds",) for stage in STAGES_OF_PAIRS},
 }
+_SECONDS = tuple(
+    f"{column}{ending}"
+    for columns in _STAGES.values()
+    for column in columns
+    for ending in ("", "_cpu")
+)
+COLUMNS = ("row_key", "timing", "measured_at", *_GROUP, *_SECONDS)
 
 
-def with_scaled_times(best: pl.LazyFrame, measured: pl.LazyFrame) -> pl.LazyFrame:
+def with_scaled_times(best: pl.DataFrame, measured: pl.DataFrame) -> pl.DataFrame:
     """Scale the times of rows where the same machine timed others of the combination by themselves.
 
     Parameters
     ----------
-    best : pl.LazyFrame
+    best : pl.DataFrame
         One row a measurement, the best that there is of each; columns as in `schema.COLUMNS`.
-    measured : pl.LazyFrame
-        All rows without a failure, also the same measurement with other timings.
+    measured : pl.DataFrame
+        All rows without a failure, also the same measurement with other timings; at least the
+        `COLUMNS`.
 
     Returns
     -------
-    pl.LazyFrame
+    pl.DataFrame
         `best`; in scaled rows ``timing`` is ``scaled``.
     """
     import polars as pl
 
-    factors = _factors(measured)
+    factors = _factors(measured.lazy()).collect()
+    if factors.is_empty():
+        return best
     rough = pl.col("timing").is_in(("shared", "estimated")) & pl.col("_scaled").is_not_null()
-    scaled = best.join(factors, on=_GROUP, how="left", maintain_order="left").with_columns(
-        pl.when(rough).then(pl.lit(SCALED)).otherwise("timing").alias("timing"),
-        *(
-            pl.when(rough & pl.col(factor).is_not_null())
-            .then(pl.col(f"{column}_cpu") * pl.col(factor))
-            .otherwise(name)
-            .alias(name)
-            for stage, columns in _COLUMNS.items()
-            for column in columns
-            for name, factor in (
-                (column, f"_{stage}_wall"),
-                (f"{column}_cpu", f"_{stage}_cpu"),
-            )
-        ),
+    counts = list(PER_THOUSAND.values())
+    scaled = (
+        best.lazy()
+        .select("timing", *_GROUP, *_SECONDS, *PER_THOUSAND, *counts, "total_seconds")
+        .join(factors.lazy(), on=_GROUP, how="left", maintain_order="left")
+        .with_columns(
+            pl.when(rough).then(pl.lit(SCALED)).otherwise("timing").alias("timing"),
+            *(
+                pl.when(rough & pl.col(factor).is_not_null())
+                .then(pl.col(f"{column}_cpu") * pl.col(factor))
+                .otherwise(name)
+                .alias(name)
+                for stage, columns in _STAGES.items()
+                for column in columns
+                for name, factor in (
+                    (column, f"_{stage}_wall"),
+                    (f"{column}_cpu", f"_{stage}_cpu"),
+                )
+            ),
+        )
     )
     total, done = _total_seconds(), pl.col("timing") == SCALED
-    return scaled.with_columns(
+    scaled = scaled.with_columns(
         pl.when(done).then(total).otherwise("total_seconds").alias("total_seconds"),
         *(
             pl.when(done)
@@ -66,20 +82,16 @@ def with_scaled_times(best: pl.LazyFrame, measured: pl.LazyFrame) -> pl.LazyFram
             .alias(name)
             for name, count in PER_THOUSAND.items()
         ),
-    ).drop("_scaled", *(f"_{stage}_{side}" for stage in _COLUMNS for side in ("wall", "cpu")))
+    )
+    changed = scaled.select("timing", *_SECONDS, *PER_THOUSAND, "total_seconds").collect()
+    return best.with_columns(changed.get_columns())
 
 
 def _factors(measured: pl.LazyFrame) -> pl.LazyFrame:
     """What a core of its own makes of the CPU time of a stage: a row a machine and combination."""
     import polars as pl
 
-    seconds = [
-        f"{column}{ending}"
-        for columns in _COLUMNS.values()
-        for column in columns
-        for ending in ("", "_cpu")
-    ]
-    kept = measured.sort("measured_at").select("row_key", "timing", *_GROUP, *seconds)
+    kept = measured.select(COLUMNS).sort("measured_at")
     alone = kept.filter(pl.col("timing") == "exclusive").unique("row_key", keep="last")
     beside = kept.filter(pl.col("timing").is_in(("shared", "estimated")))
     both = alone.join(
@@ -89,7 +101,7 @@ def _factors(measured: pl.LazyFrame) -> pl.LazyFrame:
         pl.lit(value=True).alias("_scaled"),
         *(
             _ratio(columns, ending).alias(f"_{stage}_{side}")
-            for stage, columns in _COLUMNS.items()
+            for stage, columns in _STAGES.items()
             for side, ending in (("wall", ""), ("cpu", "_cpu"))
         ),
     )
@@ -110,6 +122,6 @@ def _total_seconds() -> pl.Expr:
 
     stages = [
         sum((pl.col(column) for column in columns[1:]), pl.col(columns[0])) / len(columns)
-        for columns in _COLUMNS.values()
+        for columns in _STAGES.values()
     ]
     return sum(stages[1:], stages[0])

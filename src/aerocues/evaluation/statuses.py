@@ -30,3 +30,5 @@ STATUSES: tuple[Status, ...] = (
     Status("timeout", "a stage used up its time limit", retried=True),
     Status("out_of_memory", "a stage asked for more memory than the limit", retried=True),
 )
+
+RETRIED: tuple[str, ...] = tuple(status.name for status in STATUSES if status.retried)

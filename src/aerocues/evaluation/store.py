@@ -10,15 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
+from aerocues.evaluation.best_rows import best_rows
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.plan import content_hash
-from aerocues.evaluation.planned_rows import IDENTITY_NAMES, merge_plans
+from aerocues.evaluation.planned_rows import merge_plans
 from aerocues.evaluation.protocol import TIMINGS, Timing
 from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
-from aerocues.evaluation.scaled_times import with_scaled_times
+from aerocues.evaluation.row_files import RowFiles
 from aerocues.evaluation.schema import polars_schema
-from aerocues.evaluation.statuses import STATUSES
+from aerocues.evaluation.statuses import RETRIED
 from aerocues.evaluation.whole_files import json_content, parquet_content
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ RACE = "race.json"
 PLAN = "plan.parquet"
 OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
 LONGEST_LIST = 12
-RETRIED = tuple(status.name for status in STATUSES if status.retried)
 
 
 class Store(ReconstructionStore):
@@ -41,6 +41,7 @@ class Store(ReconstructionStore):
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
         self._parts = folder / PARTS
+        self._row_files = RowFiles(self._parts)
 
     @classmethod
     def create(cls, folder: Path) -> Store:
@@ -82,7 +83,9 @@ class Store(ReconstructionStore):
         """
         with folder_lock(self.folder):
             self._remove_leftovers()
+            self._row_files.put_together()
             yield
+            self._row_files.put_together()
 
     @classmethod
     def open(cls, folder: Path) -> Store:
@@ -117,7 +120,7 @@ class Store(ReconstructionStore):
         import polars as pl
 
         table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
-        self._write(self._parts / f"{name}.parquet", parquet_content(table))
+        self._row_files.write(name, table)
 
     def write_finished(self, finished: Finished) -> None:
         """Store what an engine finished; see `write_rows`.
@@ -170,8 +173,8 @@ class Store(ReconstructionStore):
         return content
 
     def parts(self) -> list[Path]:
-        """The finished parts."""
-        return sorted(self._parts.glob("*.parquet"))
+        """The files with finished rows."""
+        return self._row_files.files()
 
     def present(self, timing: Timing, *, retry_failed: bool) -> frozenset[str]:
         """Keys of the rows that need not be measured again.
@@ -179,61 +182,21 @@ class Store(ReconstructionStore):
         Rows with worse times do not serve where better ones are asked for, unless they failed; the
         converse does.
         """
-        parts = self.parts()
-        if not parts:
-            return frozenset()
         import polars as pl
 
-        rows = self._scan(parts).select("row_key", "status", "timing")
+        rows = self._row_files.read(("row_key", "status", "timing"))
         good_enough = TIMINGS[TIMINGS.index(timing) :]
         failed = pl.col("status").is_in(RETRIED)
         rows = rows.filter(failed | pl.col("timing").is_in(good_enough))
         if retry_failed:
             rows = rows.filter(~failed)
-        return frozenset(self._collect(rows)["row_key"].to_list())
+        return frozenset(rows["row_key"].to_list())
 
     def table(self) -> pl.DataFrame:
-        """The measured ones among the planned rows, each once, in order.
-
-        Where a row was measured more than once, one that did not fail counts before one that did,
-        better times before worse ones (`protocol.TIMINGS`), and then the latest. Where others of
-        its combination were timed exclusively, its times are scaled (`scaled_times`).
-        """
-        import polars as pl
-
-        schema = polars_schema()
-        parts = self.parts()
-        if not parts:
-            return pl.DataFrame(schema=schema)
-        planned = self.planned().select(*IDENTITY_NAMES, "row_key").lazy()
-        measured = self._scan(parts)
-        best = measured.sort(
-            ~pl.col("status").is_in(RETRIED),
-            pl.col("timing").replace_strict(
-                {name: rank for rank, name in enumerate(TIMINGS)}, default=-1
-            ),
-            "measured_at",
-            nulls_last=False,
-        ).unique("row_key", keep="last", maintain_order=True)
-        timed = with_scaled_times(best, measured.filter(~pl.col("status").is_in(RETRIED)))
-        rows = planned.join(timed.drop(IDENTITY_NAMES), on="row_key")
-        rows = rows.select(list(schema)).sort(IDENTITY_NAMES)
-        return self._collect(rows)
+        """The measured ones among the planned rows, each once, in order; see `best_rows`."""
+        rows = self.rows()
+        return best_rows(self.planned(), rows) if len(rows) else rows
 
     def rows(self) -> pl.DataFrame:
         """Every stored row as it was written, planned or not, also the same one twice."""
-        import polars as pl
-
-        parts = self.parts()
-        return self._collect(self._scan(parts)) if parts else pl.DataFrame(schema=polars_schema())
-
-    def _scan(self, parts: list[Path]) -> pl.LazyFrame:
-        import polars as pl
-
-        # Older results lack the columns that have come since.
-        return pl.scan_parquet(
-            parts,
-            schema=pl.Schema(polars_schema()),
-            missing_columns="insert",
-            extra_columns="ignore",
-        )
+        return self._row_files.read()
