@@ -59,16 +59,14 @@ def report_entries(
         raise ScoreError("there are no results to report on; name a results folder")
     told = progress or _silent
     told("reading and scoring")
-    sources = _results_of_entries(results)
-    if reconstruction is None and len(sources) > 1:
-        reconstruction = False
     entries = entries_of(
         results, preset, criteria=criteria, reconstruction=reconstruction, **changes
     )
     if not entries:
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
     found = []
-    for source, entry in zip(sources, entries, strict=True):
+    for entry in entries:
+        source = results[entry.source]
         told(f"scoring {entry.name}")
         scores = entry.scores
         ranking = rank_alternatives(scores.table, scores.settings, resamples=resamples, seed=seed)
@@ -81,15 +79,6 @@ def report_entries(
 
 def _silent(_: str) -> None:
     pass
-
-
-def _results_of_entries(results: Sequence[Results]) -> list[Results]:
-    """What each data set and machine was read from, in the order of `entries_of`."""
-    return [
-        each
-        for each in results
-        for _ in range(each.table().select("dataset", "machine").n_unique())
-    ]
 
 
 def default_title(entries: Sequence[ReportEntry]) -> str:

@@ -44,6 +44,8 @@ class Entry:
     preset : str
     reconstructed : bool
         Whether there are reconstructions of it.
+    source : int
+        Position of the results that it came from.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Entry:
     scores: Scores
     preset: str
     reconstructed: bool = False
+    source: int = 0
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,7 @@ def entries_of(
         See `measured.table_of`.
     reconstruction : bool or None
         Whether to add the criteria of reconstruction, which all of the results then need; None:
-        where most combinations of a data set were reconstructed.
+        where there is one data set on one machine, of which most combinations were reconstructed.
     **changes
         Of the preset's settings; None changes nothing.
 
@@ -140,18 +143,24 @@ def entries_of(
     for folder in folders:
         if folders.count(folder) > 1:
             raise ScoreError(f"{folder} is named twice; name each result once")
+    groups = [
+        (source, names, rows)
+        for source, each in enumerate(results)
+        for names, rows in _by_dataset_and_machine(each.table())
+    ]
+    if reconstruction is None and len(groups) > 1:
+        reconstruction = False
+    models = [each.reconstructions() for each in results]
     found: list[tuple[Path, Entry]] = []
-    for each in results:
-        models = each.reconstructions()
-        for (dataset, machine), rows in _by_dataset_and_machine(each.table()):
-            measured = table_of(
-                _Rows(rows, models), preset, criteria=criteria, reconstruction=reconstruction
-            )
-            scores = score(measured.table, settings_from(measured.preset, **changes))
-            preset_name = measured.preset.name
-            known = dataset in models["dataset"]
-            entry = Entry(dataset, dataset, machine, rows, scores, preset_name, known)
-            found.append((each.folder, entry))
+    for source, (dataset, machine), rows in groups:
+        measured = table_of(
+            _Rows(rows, models[source]), preset, criteria=criteria, reconstruction=reconstruction
+        )
+        scores = score(measured.table, settings_from(measured.preset, **changes))
+        known = dataset in models[source]["dataset"]
+        name = measured.preset.name
+        entry = Entry(dataset, dataset, machine, rows, scores, name, known, source)
+        found.append((results[source].folder, entry))
     presets = sorted({entry.preset for _, entry in found})
     if len(presets) > 1:
         raise ScoreError(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.aggregation import aggregate
-from aerocues.scoring.normalisation import Means, Sums, normalise
+from aerocues.scoring.normalisation import Means, normalise, plain_means
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
 from aerocues.scoring.weights import weights_by_method
@@ -134,7 +134,7 @@ def score(table: DecisionTable, settings: ScoreSettings | None = None) -> Scores
         If no alternative has a value in every criterion.
     """
     settings = settings or ScoreSettings()
-    means = Sums(table).means(np.ones((1, len(table.repeats))))
+    means = plain_means(table)
     batch = score_batch(means, table, settings)
     if np.isnan(batch.scores).all():
         raise ScoreError(

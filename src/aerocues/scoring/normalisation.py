@@ -85,6 +85,21 @@ class Sums:
         )
 
 
+def plain_means(table: DecisionTable) -> Means:
+    """Means over all repeats, each counted once: what `Sums` gives without laying the table out."""
+    missing = np.isnan(table.values)
+    valid = np.count_nonzero(~missing, axis=1).astype(np.float64)
+    total = np.where(missing, 0, table.values).sum(axis=1)
+    mean = np.divide(total, valid, out=np.full(valid.shape, np.nan), where=valid > 0)
+    return Means(
+        mean=mean[None],
+        valid=valid[None],
+        failed=table.failed.sum(axis=1, dtype=np.float64)[None],
+        low=np.where(missing, np.inf, table.values).min(axis=(0, 1))[None],
+        high=np.where(missing, -np.inf, table.values).max(axis=(0, 1))[None],
+    )
+
+
 def normalise(means: Means, table: DecisionTable, failures: Failures) -> Array:
     """Bring all criteria into [0, 1], 1 being the best.
 
