@@ -161,3 +161,23 @@ def test_what_images_rule_out_is_told_by_reason_even_where_nothing_is_left(
         LiveDisplay(live=live).planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS), "shared")
     for line in LEFT_OUT:
         assert line in screen.getvalue()
+
+
+def test_a_second_pass_is_told_apart_from_the_rows_that_are_there() -> None:
+    clock = Clock()
+    tally = Tally(clock=clock)
+    tally.planned(PLAN, "estimated")
+    assert tally.stored() == "60 rows are stored"
+    tally.finished(done(DEAR))
+    tally.finished(done(CHEAP))
+    assert tally.measured() == "measured 40 rows"
+    tally.planned(plan_of(CHEAP, rows=20), "exclusive")
+    assert tally.stored() == "100 rows are stored, 0 of 20 timed alone"
+    tally.finished(done(CHEAP))
+    assert tally.stored() == "100 rows are stored, 20 of 20 timed alone"
+    assert tally.measured() == "measured 40 rows and timed 20 alone"
+
+
+def test_rows_that_count_no_longer_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    PlainLines().set_aside(1200)
+    assert "1,200 rows of other images or settings in this folder" in capsys.readouterr().err

@@ -22,7 +22,9 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert first.code == 0
     assert re.search(r"1 ORB-ORB-HAM-BF +[01]\.\d{3} .* 100 % +[01]\.\d{3} +\d+ ", first.out)
     assert "photos: 1 combination on 2 pairs" in first.out
-    assert re.search(r"rows +2: ok 2\ntimes +exclusive 2( \(\d disturbed\))?\n", first.out)
+    assert re.search(
+        r"rows +2: ok 2\ntimes +exclusive 2( \(\d disturbed by other programs\))?\n", first.out
+    )
     assert f"aerocues status '{output}'" in first.out
     assert f"aerocues score '{output}'" in first.out
     assert "2 rows to time, one call at a time, in 1 unit of work" in first.err
@@ -68,8 +70,10 @@ def test_a_run_in_which_all_fails_says_why_there_is_no_ranking(call: Call, tmp_p
     words = ("run", tmp_path / "blank", "-o", tmp_path / "results", "--workers", 1)
     answer = call(*words, "--combinations", "ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-BF")
     assert answer.code == 0
-    assert "no ranking: " in answer.out
-    assert "no_keypoints 2" in answer.out
+    assert "no ranking: nothing succeeded on blank (no_keypoints 2)" in answer.out
+    assert "rows     2: no_keypoints 2" in answer.out
+    assert "aerocues status" in answer.out
+    assert "aerocues report" not in answer.out
 
 
 def test_a_dry_run_shows_the_plan_and_writes_nothing(

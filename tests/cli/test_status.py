@@ -91,3 +91,16 @@ def test_a_folder_without_results_is_refused(call: Call, tmp_path: Path) -> None
         answer = call("status", folder)
         assert answer.code == 2
         assert re.fullmatch(r"error: .* is no results folder .*\n", answer.err)
+
+
+def test_what_is_left_to_be_timed_alone_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "untimed"
+    shutil.copytree(finished, folder)
+    plan = pl.read_parquet(folder / "plan.parquet")
+    plan.with_columns(timed_alone=pl.col("pair") == 0).write_parquet(folder / "plan.parquet")
+    for part in (folder / "parts").glob("*.parquet"):
+        pl.read_parquet(part).with_columns(timing=pl.lit("estimated")).write_parquet(part)
+    answer = call("status", folder)
+    assert answer.out.startswith("12 of 12 rows done, none left; 4 of them still to be timed alone")
+    assert "run the same command again" in answer.out
+    assert json.loads(call("status", folder, "--json").out)["untimed"] == 4

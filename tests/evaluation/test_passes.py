@@ -18,9 +18,11 @@ from aerocues.evaluation.metrics import PER_THOUSAND, add_metrics
 from aerocues.evaluation.passes import Pass, passes
 from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.protocol import Timing
+from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import Observer, plan_run, run
 from aerocues.evaluation.scaled_times import with_scaled_times
 from aerocues.evaluation.schema import empty_row, polars_schema
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
 
@@ -29,6 +31,16 @@ STAGES = (
     *("detect_seconds_1", "detect_seconds_2", "describe_seconds_1", "describe_seconds_2"),
     *("match_seconds", "verify_seconds"),
 )
+
+
+@dataclass
+class Told(Observer):
+    """Remembers how many rows were set aside."""
+
+    aside: list[int] = field(default_factory=list)
+
+    def set_aside(self, rows: int) -> None:
+        self.aside.append(rows)
 
 
 @dataclass
@@ -113,6 +125,46 @@ def test_what_is_finished_is_not_timed_again_and_a_larger_sample_goes_on(tmp_pat
         seen = Passing()
         run(dataset, FEW, tmp_path / "r", timed_pairs=timed, engine=engine, observer=seen)
         assert seen.seen == measured
+
+
+class StopsBeforeTiming(Observer):
+    """An interruption between the passes."""
+
+    def planned(self, plan: Plan, timing: Timing) -> None:
+        if timing == "exclusive":
+            raise KeyboardInterrupt
+
+
+def test_a_run_that_ended_between_the_passes_has_rows_left_to_time(tmp_path: Path) -> None:
+    dataset, engine = write_dataset(tmp_path / "images", strip(5)), InlineEngine()
+    with pytest.raises(KeyboardInterrupt):
+        run(
+            *(dataset, FEW, tmp_path / "r"),
+            timed_pairs=2,
+            engine=engine,
+            observer=StopsBeforeTiming(),
+        )
+    status = Results(tmp_path / "r").status()
+    assert (status.done, status.left, status.untimed) == (12, 0, 6)
+    status = run(dataset, FEW, tmp_path / "r", timed_pairs=2, engine=engine).status()
+    assert (status.done, status.left, status.untimed) == (12, 0, 0)
+
+
+def test_rows_of_other_settings_in_the_folder_are_told(tmp_path: Path) -> None:
+    dataset, engine, told = write_dataset(tmp_path / "images", strip(5)), InlineEngine(), Told()
+    for combinations, limit in (
+        (FEW, ALL_KEYPOINTS),
+        ("BRISK-BRISK-HAM-BF", ALL_KEYPOINTS),  # adds to what is there
+        ("BRISK-BRISK-HAM-BF", KeypointLimit(50)),
+    ):
+        run(
+            *(dataset, combinations, tmp_path / "r"),
+            timing="shared",
+            limit=limit,
+            engine=engine,
+            observer=told,
+        )
+    assert told.aside == [16]
 
 
 def row(number: int, timing: str, seconds: float, **known: Any) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds
+from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds, told_aside
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.protocol import Timing
@@ -35,6 +35,10 @@ class LiveDisplay(Tally):
     def hashing(self, done: int, total: int) -> None:
         self._hashing = f"reading images: {done:,} of {total:,}"
         self._draw(at_once=done == total)
+
+    def set_aside(self, rows: int) -> None:
+        if self.live:
+            self.live.console.print(told_aside(rows), soft_wrap=True, markup=False)
 
     def planned(self, plan: Plan, timing: Timing) -> None:
         first = self.plan is None

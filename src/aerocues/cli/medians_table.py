@@ -50,10 +50,11 @@ def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
         )
     shown = f"best {len(best)} of " if len(best) < len(ranked) else ""
     pairs = count(rows.select(PAIR).n_unique(), "pair")
-    title = f"{dataset}: {shown}{count(len(ranked), 'combination')} on {pairs}"
+    title = f"{dataset}: {shown}{count(len(ranked), 'combination')} on {pairs}, by inlier ratio"
     console.print(Text(title, style="bold"))
     print_table(console, output)
     note = (
-        "Medians over all pairs. A pair without success counts as 0; its times count where known."
+        "Medians over all pairs. A pair without success counts as 0; its times count where known. "
+        "'aerocues score' ranks by all criteria together."
     )
     console.print(Text(note, style="dim"))

@@ -41,6 +41,15 @@ def left_out(plan: Plan) -> list[str]:
     ]
 
 
+def told_aside(rows: int) -> str:
+    """What becomes of rows that other settings measured."""
+    return (
+        f"{count(rows, 'row')} of other images or settings in this folder stay there, but count "
+        "no longer; the command that measured them brings them back (give -o another folder to "
+        "keep both)"
+    )
+
+
 @dataclass
 class Tally(Observer):
     """What has been done so far in a pass; `clock` gives seconds."""
@@ -52,6 +61,7 @@ class Tally(Observer):
     timing: Timing = "shared"
     _started: float = 0.0
     _rows_before: int = 0
+    _stored_before: int | None = None
     _cost_total: float = 0.0
     _cost_done: float = 0.0
     _began: float = 0.0
@@ -60,6 +70,8 @@ class Tally(Observer):
     def planned(self, plan: Plan, timing: Timing) -> None:
         if self.plan is None:
             self._started = self.clock()
+        else:
+            self._stored_before = self.rows_stored
         self._rows_before += self.rows_measured
         self.rows_measured, self._cost_done = 0, 0.0
         self.statuses.clear()
@@ -81,6 +93,20 @@ class Tally(Observer):
     def rows_measured_in_all(self) -> int:
         """Rows that all passes so far have measured; a timed one counts once more."""
         return self._rows_before + self.rows_measured
+
+    def stored(self) -> str:
+        """``36 rows are stored, 0 of 6 timed alone``."""
+        if self._stored_before is None:
+            return f"{self.rows_stored:,} rows are stored"
+        timed = f"{self.rows_stored:,} of {self.rows_planned:,} timed alone"
+        return f"{self._stored_before:,} rows are stored, {timed}"
+
+    def measured(self) -> str:
+        """``measured 75 rows and timed 30 alone``."""
+        if self._stored_before is None:
+            return f"measured {count(self.rows_measured, 'row')}"
+        first = f"measured {count(self._rows_before, 'row')} and " if self._rows_before else ""
+        return f"{first}timed {self.rows_measured:,} alone"
 
     @property
     def elapsed_in_all(self) -> float:
@@ -130,6 +156,9 @@ class PlainLines(Tally):
 
     _line_time: float = 0.0
     _line_share: float = 0.0
+
+    def set_aside(self, rows: int) -> None:
+        self._say(told_aside(rows))
 
     def planned(self, plan: Plan, timing: Timing) -> None:
         first = self.plan is None

@@ -86,6 +86,8 @@ def _how_sure(ranking: Ranking) -> list[str]:
         told = f"too few pairs to tell {best} from"
         lines.append(f"{told}: {_some(untested, NAMED)}")
     others = len(ranking.scores.order) - 1
+    if not others:
+        lines.append("A score compares: of a single combination it says nothing. Measure others.")
     if others and not alike and not untested:
         lines.append(f"{best} is better than every other one (corrected p < 0.05)")
     if not ranking.scores.table.by_repeat.all():

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from aerocues.cli.progress import Tally
     from aerocues.evaluation.results import Results
     from aerocues.methods.strongest import KeypointLimit
@@ -205,7 +207,7 @@ def _measure(arguments: dict[str, Any]) -> Results:
         with display() as tally:
             results = aerocues.run(**arguments, observer=tally)
     except Interrupted as interruption:
-        stored = f"; {tally.rows_stored:,} rows are stored" if tally and tally.plan else ""
+        stored = f"; {tally.stored()}" if tally and tally.plan else ""
         sys.stderr.write(f"interrupted{stored}; run the same command again to go on\n")
         raise typer.Exit(interruption.exit_code) from None
     _report_end(tally)
@@ -217,8 +219,7 @@ def _report_end(tally: Tally) -> None:
     from aerocues.cli.progress import spoken_seconds
 
     if tally.rows_measured_in_all:
-        measured = count(tally.rows_measured_in_all, "row")
-        line = f"measured {measured} in {spoken_seconds(tally.elapsed_in_all)}"
+        line = f"{tally.measured()} in {spoken_seconds(tally.elapsed_in_all)}"
     elif tally.rows_stored:
         line = f"nothing to measure: all {count(tally.rows_stored, 'row')} are there already"
     else:
@@ -232,6 +233,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
     from aerocues.cli.status import times_of
+    from aerocues.evaluation.results import timing_counts
 
     table = results.table().filter(pl.col("dataset") == dataset)
     if len(table):
@@ -240,17 +242,23 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     counts = table["status"].value_counts(sort=True).iter_rows()
     by_status = ", ".join(f"{status} {number:,}" for status, number in counts) or "none"
     folder = shlex.quote(str(results.folder))
+    timings, disturbed = timing_counts(table)
     for line in (
         f"\nrows     {len(table):,}: {by_status}",
         *machine_lines(table),
-        f"times    {times_of(results.status())}",
+        f"times    {times_of(timings, disturbed)}",
         f"results  {results.folder}",
         f"next     aerocues status {folder}",
-        f"         aerocues score {folder}",
-        f"         aerocues report {folder}",
-        f"         aerocues results {folder} --csv rows.csv",
+        *(f"         aerocues {what}" for what in _next(folder, table)),
     ):
         console.print(line, soft_wrap=True, markup=False)
+
+
+def _next(folder: str, table: pl.DataFrame) -> tuple[str, ...]:
+    """What the rows are good for; where none succeeded, there is nothing to rank."""
+    rows = f"results {folder} --csv rows.csv"
+    ranked = (f"score {folder}", f"report {folder}") if (table["status"] == "ok").any() else ()
+    return (*ranked, rows)
 
 
 def _print_ranking(results: Results, dataset: str, top: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -50,6 +50,7 @@ def _print_json(found: RunStatus) -> None:
         "exclusions": found.exclusions,
         "timings": dict(found.timings),
         "disturbed": found.disturbed,
+        "untimed": found.untimed,
     }
     typer.echo(json.dumps(facts, indent=2))
 
@@ -61,6 +62,7 @@ def _print_status(found: RunStatus, folder: Path) -> None:
 
     console = standard_output()
     left = f", {found.left:,} left" if found.left else ", none left"
+    left += f"; {found.untimed:,} of them still to be timed alone" if found.untimed else ""
     console.print(Text(f"{found.done:,} of {found.planned:,} rows done{left}", style="bold"))
     by_status = plain_table("", "rows", numbers=1)
     for name, number in found.statuses.items():
@@ -68,7 +70,7 @@ def _print_status(found: RunStatus, folder: Path) -> None:
     if found.statuses:
         print_table(console, by_status)
     if found.timings:
-        console.print(Text(f"times: {times_of(found)}"))
+        console.print(Text(f"times: {times_of(found.timings, found.disturbed)}"))
     if len(found.failures):
         console.print(Text("\nnot ok, by reason and methods", style="bold"))
         print_table(console, _failures(found))
@@ -78,19 +80,19 @@ def _print_status(found: RunStatus, folder: Path) -> None:
         console.print(Text("\nleft out because of the images", style="bold"))
         for line in _exclusions(found):
             console.print(Text(f"  {line}"))
-    if found.left:
+    if found.left or found.untimed:
         first = "unzip it and " if folder.is_file() else ""
         where = "FOLDER" if folder.is_file() else folder
-        told = f"{first}run the same command again (-o {where}) to measure what is left"
+        told = f"{first}run the same command again (-o {where}) to go on"
         console.print(Text(f"\n{told}"))
 
 
-def times_of(found: RunStatus) -> str:
-    """``exclusive 1,700 (2 disturbed), scaled 4,080``."""
-    disturbed = f" ({found.disturbed:,} disturbed)" if found.disturbed else ""
+def times_of(timings: Mapping[str, int], disturbed: int) -> str:
+    """``exclusive 1,700 (2 disturbed by other programs), scaled 4,080``."""
+    said = f" ({disturbed:,} disturbed by other programs)" if disturbed else ""
     return ", ".join(
-        f"{name} {number:,}{disturbed if name == 'exclusive' else ''}"
-        for name, number in found.timings.items()
+        f"{name} {number:,}{said if name == 'exclusive' else ''}"
+        for name, number in timings.items()
     )
 
 

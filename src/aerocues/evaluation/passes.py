@@ -50,6 +50,17 @@ def passes(pairs: Sequence[Pair], timing: Timing, timed_pairs: int, seed: int) -
     return Pass(quality), Pass("exclusive", _sample(pairs, timed_pairs, seed))
 
 
+def timed_alone(turns: Sequence[Pass], pairs: Sequence[Pair]) -> frozenset[int]:
+    """Numbers of the pairs that some pass times by themselves."""
+    return frozenset(
+        pair.index
+        for turn in turns
+        if turn.timing == "exclusive"
+        for pair in pairs
+        if turn.pairs is None or pair.index in turn.pairs
+    )
+
+
 def _sample(pairs: Sequence[Pair], count: int, seed: int) -> frozenset[int]:
     """Numbers of pairs chosen at random: one of each sequence, then the second of each, and so on.
 

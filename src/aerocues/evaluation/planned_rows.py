@@ -6,7 +6,7 @@ What the images are called, and which number a pair has, may change; this table 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from aerocues.evaluation.schema import IDENTITY, polars_schema
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 PAIR = ("image_1", "image_2")
 METHODS = ("detector", "descriptor", "norm", "matcher")
 IDENTITY_NAMES = tuple(column.name for column in IDENTITY)
+TIMED_ALONE = "timed_alone"
 
 
 class PlannedRow(NamedTuple):
@@ -29,14 +30,28 @@ class PlannedRow(NamedTuple):
     row_key: str
 
 
-def planned_table(context: Context, dataset_key: str, rows: Sequence[PlannedRow]) -> pl.DataFrame:
+def planned_table(
+    context: Context,
+    dataset_key: str,
+    rows: Sequence[PlannedRow],
+    timed: Container[int] = frozenset(),
+) -> pl.DataFrame:
     """The planned rows of one run.
+
+    Parameters
+    ----------
+    context : Context
+    dataset_key : str
+        How the images are read.
+    rows : sequence of PlannedRow
+    timed : container of int
+        Pairs that are to be timed by themselves.
 
     Returns
     -------
     pl.DataFrame
-        The columns that name a row (`schema.IDENTITY`), ``row_key``, ``settings_key`` and
-        ``dataset_key``.
+        The columns that name a row (`schema.IDENTITY`), ``row_key``, ``settings_key``,
+        ``dataset_key`` and ``timed_alone``, a boolean.
     """
     import polars as pl
 
@@ -54,7 +69,17 @@ def planned_table(context: Context, dataset_key: str, rows: Sequence[PlannedRow]
         pl.lit(context.dataset.name).alias("dataset"),
         pl.lit(context.settings_key).alias("settings_key"),
         pl.lit(dataset_key).alias("dataset_key"),
+        pl.Series(TIMED_ALONE, [pair.index in timed for pair in pairs], pl.Boolean),
     )
+
+
+def with_all_columns(plan: pl.DataFrame) -> pl.DataFrame:
+    """A plan as it is now; older ones do not say what is to be timed by itself."""
+    import polars as pl
+
+    if TIMED_ALONE in plan.columns:
+        return plan
+    return plan.with_columns(pl.lit(value=False).alias(TIMED_ALONE))
 
 
 def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:

@@ -11,12 +11,20 @@ from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
 from aerocues.evaluation.clock import DISTURBED
+from aerocues.evaluation.planned_rows import TIMED_ALONE
+from aerocues.evaluation.statuses import RETRIED
 from aerocues.evaluation.store import Store
 
 if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.evaluation.clouds import Cloud
+
+
+def timing_counts(table: pl.DataFrame) -> tuple[dict[str, int], int]:
+    """Rows by where their times come from, and those of which a stage had to share its core."""
+    timings = dict(sorted(table["timing"].drop_nulls().value_counts().iter_rows()))
+    return timings, int((table["wall_over_cpu"] > DISTURBED).sum())
 
 
 @dataclass(frozen=True)
@@ -26,6 +34,7 @@ class RunStatus:
     ``statuses`` counts rows by status; ``failures`` counts the rows that ended otherwise than ok,
     by status, detector and descriptor, with an example message. ``timings`` counts rows by where
     their times come from, and ``disturbed`` those of which a stage never had a core to itself.
+    ``untimed`` counts those that are done, but are still to be timed by themselves.
     """
 
     planned: int
@@ -35,6 +44,7 @@ class RunStatus:
     exclusions: list[dict[str, Any]]
     timings: Mapping[str, int]
     disturbed: int
+    untimed: int
 
     @property
     def left(self) -> int:
@@ -140,13 +150,17 @@ class Results:
                 "status", "rows", "detector", "descriptor", descending=[False, True, False, False]
             )
         )
-        settings = self.settings
+        timings, disturbed = timing_counts(table)
+        settings, planned = self.settings, self._store.planned()
+        rough = table.filter(~pl.col("status").is_in(RETRIED), pl.col("timing") != "exclusive")
+        to_time = planned.filter(TIMED_ALONE).join(rough, on="row_key", how="semi")
         return RunStatus(
-            planned=len(self._store.planned()),
+            planned=len(planned),
             done=len(table),
             statuses=dict(zip(counts["status"], counts["len"], strict=True)),
             failures=failures,
             exclusions=list(settings.get("exclusions", [])),
-            timings=dict(sorted(table["timing"].drop_nulls().value_counts().iter_rows())),
-            disturbed=int((table["wall_over_cpu"] > DISTURBED).sum()),
+            timings=timings,
+            disturbed=disturbed,
+            untimed=len(to_time),
         )

@@ -14,7 +14,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context, run_facts
 from aerocues.evaluation.engine import Activity, Engine, Finished
-from aerocues.evaluation.passes import TIMED_PAIRS, Pass, passes
+from aerocues.evaluation.passes import TIMED_PAIRS, Pass, passes, timed_alone
 from aerocues.evaluation.plan import Plan, content_hash, make_plan
 from aerocues.evaluation.planned_rows import planned_table
 from aerocues.evaluation.protocol import Timing
@@ -29,6 +29,8 @@ from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 if TYPE_CHECKING:
     from collections.abc import Generator
 
+    import polars as pl
+
     from aerocues.evaluation.local_engine import LocalEngine
 
 DEFAULT_TIMEOUT = 600.0
@@ -39,6 +41,9 @@ class Observer:
 
     def hashing(self, done: int, total: int) -> None:
         """`done` of `total` images have been read to tell whether they changed."""
+
+    def set_aside(self, rows: int) -> None:
+        """So many rows in the folder, of other settings, count no longer."""
 
     def planned(self, plan: Plan, timing: Timing) -> None:
         """The work of a pass, which is timed in this way, has been divided into units."""
@@ -197,12 +202,25 @@ def run(
             own = context.timed(turn.timing)
             plan = _plan(own, chosen, turn, store, observer.hashing, retry_failed=retry_failed)
             if number == 0:
-                dataset_key = content_hash([dataset.geometry, dataset.settings])
-                store.write_plan(planned_table(context, dataset_key, plan.rows))
-                store.write_run(run_facts(context, parts, plan, chosen))
+                facts = run_facts(context, parts, plan, chosen)
+                timed = timed_alone(turns, dataset.pairs)
+                read = content_hash([dataset.geometry, dataset.settings])
+                _record(store, planned_table(context, read, plan.rows, timed), facts, observer)
             observer.planned(plan, turn.timing)
             _measure(runner.run(plan.units, own, observer.working), store, observer)
     return Results(store.folder)
+
+
+def _record(
+    store: Store, planned: pl.DataFrame, facts: Mapping[str, object], observer: Observer
+) -> None:
+    """Store what is to be measured; tell of rows that therefore count no longer."""
+    before = store.planned_keys()
+    store.write_plan(planned)
+    store.write_run(facts)
+    aside = store.measured(before - store.planned_keys())
+    if aside:
+        observer.set_aside(len(aside))
 
 
 def _plan(

@@ -14,7 +14,7 @@ from aerocues.evaluation.best_rows import best_rows
 from aerocues.evaluation.folder_lock import LOCK, folder_lock
 from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.plan import content_hash
-from aerocues.evaluation.planned_rows import merge_plans
+from aerocues.evaluation.planned_rows import merge_plans, with_all_columns
 from aerocues.evaluation.protocol import TIMINGS, Timing
 from aerocues.evaluation.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
 from aerocues.evaluation.row_files import RowFiles
@@ -136,11 +136,9 @@ class Store(ReconstructionStore):
 
     def write_plan(self, rows: pl.DataFrame) -> None:
         """Add the planned rows of a run; see `planned_rows.merge_plans`."""
-        merged = merge_plans(self._all_planned(rows), rows)
-        self._write(self.folder / PLAN, parquet_content(merged))
-
-    def _all_planned(self, empty: pl.DataFrame) -> pl.DataFrame:
-        return self.plan() if (self.folder / PLAN).is_file() else empty.clear()
+        new = with_all_columns(rows)
+        old = self.plan() if (self.folder / PLAN).is_file() else new.clear()
+        self._write(self.folder / PLAN, parquet_content(merge_plans(old, new)))
 
     def plan(self) -> pl.DataFrame:
         """All planned rows, under whatever settings."""
@@ -151,13 +149,24 @@ class Store(ReconstructionStore):
                 f"{self.folder / PLAN} is missing; run the same 'aerocues run' command again to "
                 "restore it"
             )
-        return self._collect(pl.scan_parquet(self.folder / PLAN))
+        return with_all_columns(self._collect(pl.scan_parquet(self.folder / PLAN)))
 
     def planned(self) -> pl.DataFrame:
         """The rows that the folder is to hold, under the settings of the latest run."""
         import polars as pl
 
         return self.plan().filter(pl.col("settings_key") == self.run().get("settings_key"))
+
+    def planned_keys(self) -> frozenset[str]:
+        """Keys of the rows that the folder is to hold; none where nothing tells."""
+        try:
+            return frozenset(self.planned()["row_key"].to_list())
+        except StoreError:
+            return frozenset()  # a new folder, or a record that the next run restores
+
+    def measured(self, keys: frozenset[str]) -> frozenset[str]:
+        """Those of some rows that were measured."""
+        return keys & frozenset(self._row_files.read(("row_key",))["row_key"]) if keys else keys
 
     def run(self) -> dict[str, Any]:
         """What `write_run` stored last."""

@@ -75,7 +75,9 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
 
     datasets = rows["dataset"].unique().sort().to_list()
     if dataset is None and len(datasets) > 1:
-        raise ScoreError(f"there are several datasets; choose one of {', '.join(datasets)}")
+        raise ScoreError(
+            f"there are several datasets; choose one of them (--dataset): {', '.join(datasets)}"
+        )
     if dataset is not None and dataset not in datasets:
         raise ScoreError(f"there is no dataset {dataset!r}; choose from {', '.join(datasets)}")
     return rows if dataset is None else rows.filter(pl.col("dataset") == dataset)
@@ -122,6 +124,7 @@ def table_of(
     if rows.is_empty():
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
     chosen = preset_named(preset) if preset else suitable_preset(rows)
+    _refuse_failure(rows, chosen)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     names = chosen.criteria if criteria is None else tuple(criteria)
     if reconstruction is None:
@@ -134,6 +137,18 @@ def table_of(
     table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
     machines = tuple(rows["machine"].drop_nulls().unique().sort())
     return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows), machines)
+
+
+def _refuse_failure(rows: pl.DataFrame, preset: ScorePreset) -> None:
+    """Say so where nothing succeeded, rather than that there are no values."""
+    statuses = dict(rows["status"].value_counts(sort=True, name="rows").iter_rows())
+    if "ok" in statuses or ("chance" in statuses and not preset.chance_fails):
+        return
+    told = ", ".join(f"{status} {number:,}" for status, number in statuses.items())
+    raise ScoreError(
+        f"nothing succeeded on {rows['dataset'][0]} ({told}), so that there is nothing to rank; "
+        "'aerocues status' tells why: try larger images (--max-width), other pairs or combinations"
+    )
 
 
 def _enough_models(rows: pl.DataFrame, models: pl.DataFrame) -> bool:
