@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -35,12 +36,14 @@ def test_what_pays_becomes_a_preset(call: Call, scenes: Path, tmp_path: Path) ->
     assert answer.code == 0, answer.err
     assert "chosen by 3 pairs, judged by 3 others, divided by sequence" in answer.out
     assert "1 of 1: descriptor LATCH: bytes=32: +" in answer.err
+    assert "intervals tell of 1 scene only: judge on 3 or more" in answer.out
     assert f"--preset {preset}" in answer.out
     content = json.loads(preset.read_text())
     assert content["descriptors"] == {"LATCH": {"bytes": 32}}
     [search] = content["made"]["searches"]
     assert search["kept"] is True
     assert search["interval"][0] > 0
+    assert search["judged_by"] == {"pairs": 3, "scenes": 1}
     assert search["tuned"]["inliers"] > search["default"]["inliers"]
     [dataset] = content["made"]["datasets"]
     assert not {told.split(":")[0] for told in dataset["training"]} & {
@@ -66,6 +69,18 @@ def test_what_does_not_pay_stays(call: Call, scenes: Path, tmp_path: Path) -> No
     answer = tune(call, "MSER", scenes, preset, "--grid", grid)
     assert answer.code == 0, answer.err
     assert json.loads(preset.read_text())["detectors"] == {}
+
+
+def test_two_pairs_judge_nothing(call: Call, scenes: Path, tmp_path: Path) -> None:
+    few = tmp_path / "few"
+    for name in ("north", "south"):
+        shutil.copytree(scenes / name, few / name)
+        (few / name / "3.png").unlink()
+    preset = tmp_path / "latch.json"
+    answer = tune(call, "LATCH", few, preset)
+    assert answer.code == 0, answer.err
+    assert "descriptor LATCH: default; fewer than 3 pairs to judge by" in answer.err
+    assert json.loads(preset.read_text())["descriptors"] == {}
 
 
 def test_without_truth_thresholds_stay_and_large_grids_are_halved(

@@ -231,6 +231,7 @@ def _made(
                 "best": dict(finding.best),
                 "gain": finding.gain,
                 "interval": [finding.low, finding.high],
+                "judged_by": asdict(finding.judged_by) if finding.judged_by else None,
                 "default": asdict(finding.default) if finding.default else None,
                 "tuned": asdict(finding.tuned) if finding.tuned else None,
                 "kept": finding.pays,
