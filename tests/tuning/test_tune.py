@@ -110,6 +110,8 @@ def test_time_that_is_up_leaves_the_default(call: Call, scenes: Path, tmp_path: 
         (("LATCH", "--objective", "beauty"), "no criterion 'beauty'"),
         (("LATCH", "--grid", "missing.json"), "cannot read the grid"),
         (("LATCH", "--budget", "never"), "--budget never is no time"),
+        ((" , ",), "no method is named"),
+        (("ORB-BRIEF-HAM-BF,ORB-LATCH-HAM-BF",), "tune one at a time"),
     ],
 )
 def test_mistakes_are_told(
@@ -118,7 +120,44 @@ def test_mistakes_are_told(
     answer = tune(call, words[0], scenes, tmp_path / "p.json", *words[1:])
     assert answer.code == 2
     assert told in answer.err
-    assert not (tmp_path / "p.json").exists()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("Tuned.json", "Tuned is the name of another preset; choose a new one"),
+        ("thesis.json", "thesis is the name of another preset; choose a new one"),
+        ("folder", "folder is a folder; give a file"),
+        ("file/p.json", "p.json cannot be written"),
+    ],
+)
+def test_a_preset_that_could_not_be_used_is_refused_before_the_search(
+    call: Call, scenes: Path, tmp_path: Path, name: str, told: str
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    answer = tune(call, "LATCH", scenes, tmp_path / name)
+    assert answer.code == 2
+    assert told in answer.err
+    assert answer.err.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
+
+
+def test_folders_of_one_name_are_told_apart(call: Call, photos: Path, tmp_path: Path) -> None:
+    folders = [tmp_path / flight / "images" for flight in ("first", "second")]
+    for folder in folders:
+        shutil.copytree(photos, folder)
+    preset = tmp_path / "brief.json"
+    words = ("tune", "BRIEF", folders[0], "-o", preset, "--budget", "0.01s", *WORKERS)
+    answer = call(*words, "--validate", folders[1])
+    assert answer.code == 0, answer.err
+    datasets = json.loads(preset.read_text())["made"]["datasets"]
+    assert [each["name"] for each in datasets] == ["first/images", "second/images"]
+
+    twice = call(*words, "--validate", folders[0])
+    assert twice.code == 2
+    assert "2 data sets are called first/images; give each once" in twice.err
 
 
 @pytest.mark.slow

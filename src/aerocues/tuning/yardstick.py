@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings, preset_named
@@ -85,13 +86,19 @@ def yardstick(name: str) -> Yardstick:
     Raises
     ------
     ScoreError
-        If there is no such criterion.
+        If there is no such criterion, or it is one of 3D models.
     """
     if name.lower() == CUES:
         preset = preset_named("default")
         criteria = tuple(criteria_named(preset.criteria))
         return Yardstick(criteria, OBJECTIVES["balanced"], preset.settings)
-    return Yardstick(tuple(criteria_named([name])))
+    [criterion] = criteria_named([name])
+    if criterion.reconstruction:
+        raise ScoreError(
+            f"{criterion.name} is a figure of 3D models, which a search does not make; choose one "
+            "of image pairs, such as excess_inliers"
+        )
+    return Yardstick((criterion,))
 
 
 def of_threshold() -> Yardstick:
