@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -90,4 +91,22 @@ def test_a_run_on_a_cluster(call: Call, photos: Path, output: Path, cluster: Clu
     answer = call("run", photos, "-o", output, *RUN, *options)
     assert answer.code == 0, answer.err
     assert "dashboard http://127.0.0.1:" in answer.err
+    assert "rows     1: ok 1" in answer.out
+
+
+@pytest.mark.slow
+def test_a_missing_resource_is_told(
+    call: Call, photos: Path, output: Path, cluster: Cluster
+) -> None:
+    address = cluster.address
+    options = ("--engine", "dask", "--scheduler", address, "--resource", "board")
+    starting = threading.Timer(8.0, cluster.add_worker, ("--no-nanny", "--resources", "board=1"))
+    starting.start()
+    answer = call("run", photos, "-o", output, *RUN, *options)
+    assert answer.code == 0, answer.err
+    assert (
+        "no worker with the resource board is there yet; start some with "
+        f"'dask worker {address} --nthreads 1 --resources board=1'"
+    ) in answer.err
+    assert "waiting for a worker with the resource board, " in answer.err
     assert "rows     1: ok 1" in answer.out

@@ -120,6 +120,28 @@ def test_plain_lines_come_each_minute_even_where_nothing_moves(
     assert len(capsys.readouterr().err.splitlines()) == 1 + 3
 
 
+def test_plain_lines_say_at_once_and_each_minute_that_no_worker_is_there(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    clock = Clock()
+    lines = PlainLines(clock=clock)
+    lines.planned(plan_of(DEAR, rows=20), "shared")
+    for seconds in range(130):
+        clock.now += 1
+        lines.working([Activity(0, None, seconds, "a worker with the resource board")])
+    lines.working([Activity(0, None, 0.0)])
+    clock.now += 1
+    lines.working([Activity(0, None, 5.0, "a worker")])
+    printed = capsys.readouterr().err.splitlines()[1:]
+    assert [line.partition(";")[0] for line in printed] == [
+        "waiting for a worker with the resource board, 0 s so far",
+        "waiting for a worker with the resource board, 1 min 00 s so far",
+        "waiting for a worker with the resource board, 2 min 00 s so far",
+        "waiting for a worker, 5 s so far",
+    ]
+    assert printed[0].endswith("; 0 of 20 rows (0 %), 1 s so far")
+
+
 def test_the_live_display_shows_workers_rows_and_failures() -> None:
     from rich.console import Console
 
@@ -144,6 +166,8 @@ def test_the_live_display_shows_workers_rows_and_failures() -> None:
     assert len(first) == 100
     assert second.split() == ["worker", "2", "between", "two", "units"]
     assert outcomes.split() == ["so", "far", "timeout", "20"]
+    display.working([Activity(0, None, 65.0, "a worker with the resource board")])
+    assert shown()[1].strip() == "waiting for a worker with the resource board, 1 min 05 s so far"
 
 
 @pytest.mark.parametrize("units", [(), (DEAR,)])

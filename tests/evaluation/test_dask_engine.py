@@ -273,9 +273,11 @@ def test_only_workers_with_the_resource_are_used(
 ) -> None:
     plain = cluster.add_worker()
     used: list[psutil.Process] = []
+    told: list[str] = []
 
     class AddingOne(Observer):
         def working(self, activities: Sequence[Activity]) -> None:
+            told.extend(activity.waiting_for for activity in activities)
             if len(cluster.workers) == 1:
                 cluster.add_worker("--no-nanny", "--resources", "board=1")
 
@@ -285,6 +287,9 @@ def test_only_workers_with_the_resource_are_used(
     with connected(cluster.address) as client:
         client.wait_for_workers(1)
         engine = DaskEngine(client, resource="board")
+        assert engine.threads == 0
         results = run(views, FEW, tmp_path / "r", engine=engine, observer=AddingOne())
     assert len(results.table()) == 9
     assert used == []
+    assert told[0] == "a worker with the resource board"
+    assert told[-1] == ""

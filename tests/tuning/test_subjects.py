@@ -14,7 +14,7 @@ from aerocues.methods.making import make_descriptor, make_detector
 from aerocues.methods.presets import Preset
 from aerocues.methods.registry import opencv_methods
 from aerocues.tuning.grids import GRIDS, read_grid, settings_of
-from aerocues.tuning.subjects import Subject, subjects_of
+from aerocues.tuning.subjects import Subject, subjects_named, subjects_of
 
 METHODS = opencv_methods()
 EMPTY = Preset("p", "", chance_test=True)
@@ -112,3 +112,40 @@ def test_values_of_ones_own_are_tried(tmp_path: Path) -> None:
 def test_what_cannot_be_searched_is_told(text: str, words: str) -> None:
     with pytest.raises(SelectionError, match=words):
         subjects_of(text, METHODS)
+
+
+@pytest.mark.parametrize("text", ["ORB-BEBLID-HAM-BF", "all", "detector:all"])
+def test_values_of_ones_own_are_for_one_method(text: str) -> None:
+    with pytest.raises(SelectionError, match=f"--grid holds values for one method, and {text} is"):
+        subjects_of(text, METHODS, {"nlevels": (6,)})
+
+
+def test_a_grid_is_for_the_kind_that_is_named() -> None:
+    with pytest.raises(SelectionError, match="no method DETECTOR:LATCH"):
+        subjects_of("detector:LATCH", METHODS, {"bytes": (2, 32)})
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("ORB-BEBLID-HAM-BF", "ORB-BRIEF-HAM-BF"),
+        ("ORB-BEBLID-HAM-BF", "ORB-BEBLID-HAM-FLANN"),
+        ("detector:ORB", "ORB-BEBLID-HAM-BF"),
+        ("BEBLID", "ORB-BEBLID-HAM-BF"),
+        ("AGAST-LATCH-HAM-BF", "LATCH"),
+    ],
+)
+def test_what_would_be_mixed_without_being_measured_is_refused(names: tuple[str, ...]) -> None:
+    with pytest.raises(SelectionError, match="set the same parameters; tune one at a time"):
+        subjects_named(names, METHODS)
+
+
+def test_what_is_named_twice_is_searched_once() -> None:
+    once = subjects_named(["all"], METHODS)
+    assert subjects_named(["ORB", "all", "detector:orb"], METHODS) == [
+        *subjects_of("ORB", METHODS),
+        *(each for each in once if each.name != "detector ORB"),
+    ]
+    assert len(subjects_named(["ORB-BEBLID-HAM-BF", "AGAST-BRIEF-HAM-BF"], METHODS)) == 6
+    with pytest.raises(SelectionError, match="no method is named"):
+        subjects_named([], METHODS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -35,12 +36,14 @@ def test_what_pays_becomes_a_preset(call: Call, scenes: Path, tmp_path: Path) ->
     assert answer.code == 0, answer.err
     assert "chosen by 3 pairs, judged by 3 others, divided by sequence" in answer.out
     assert "1 of 1: descriptor LATCH: bytes=32: +" in answer.err
+    assert "intervals tell of 1 scene only: judge on 3 or more" in answer.out
     assert f"--preset {preset}" in answer.out
     content = json.loads(preset.read_text())
     assert content["descriptors"] == {"LATCH": {"bytes": 32}}
     [search] = content["made"]["searches"]
     assert search["kept"] is True
     assert search["interval"][0] > 0
+    assert search["judged_by"] == {"pairs": 3, "scenes": 1}
     assert search["tuned"]["inliers"] > search["default"]["inliers"]
     [dataset] = content["made"]["datasets"]
     assert not {told.split(":")[0] for told in dataset["training"]} & {
@@ -66,6 +69,18 @@ def test_what_does_not_pay_stays(call: Call, scenes: Path, tmp_path: Path) -> No
     answer = tune(call, "MSER", scenes, preset, "--grid", grid)
     assert answer.code == 0, answer.err
     assert json.loads(preset.read_text())["detectors"] == {}
+
+
+def test_two_pairs_judge_nothing(call: Call, scenes: Path, tmp_path: Path) -> None:
+    few = tmp_path / "few"
+    for name in ("north", "south"):
+        shutil.copytree(scenes / name, few / name)
+        (few / name / "3.png").unlink()
+    preset = tmp_path / "latch.json"
+    answer = tune(call, "LATCH", few, preset)
+    assert answer.code == 0, answer.err
+    assert "descriptor LATCH: default; fewer than 3 pairs to judge by" in answer.err
+    assert json.loads(preset.read_text())["descriptors"] == {}
 
 
 def test_without_truth_thresholds_stay_and_large_grids_are_halved(
@@ -95,6 +110,8 @@ def test_time_that_is_up_leaves_the_default(call: Call, scenes: Path, tmp_path: 
         (("LATCH", "--objective", "beauty"), "no criterion 'beauty'"),
         (("LATCH", "--grid", "missing.json"), "cannot read the grid"),
         (("LATCH", "--budget", "never"), "--budget never is no time"),
+        ((" , ",), "no method is named"),
+        (("ORB-BRIEF-HAM-BF,ORB-LATCH-HAM-BF",), "tune one at a time"),
     ],
 )
 def test_mistakes_are_told(
@@ -103,7 +120,44 @@ def test_mistakes_are_told(
     answer = tune(call, words[0], scenes, tmp_path / "p.json", *words[1:])
     assert answer.code == 2
     assert told in answer.err
-    assert not (tmp_path / "p.json").exists()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("Tuned.json", "Tuned is the name of another preset; choose a new one"),
+        ("thesis.json", "thesis is the name of another preset; choose a new one"),
+        ("folder", "folder is a folder; give a file"),
+        ("file/p.json", "p.json cannot be written"),
+    ],
+)
+def test_a_preset_that_could_not_be_used_is_refused_before_the_search(
+    call: Call, scenes: Path, tmp_path: Path, name: str, told: str
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    answer = tune(call, "LATCH", scenes, tmp_path / name)
+    assert answer.code == 2
+    assert told in answer.err
+    assert answer.err.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
+
+
+def test_folders_of_one_name_are_told_apart(call: Call, photos: Path, tmp_path: Path) -> None:
+    folders = [tmp_path / flight / "images" for flight in ("first", "second")]
+    for folder in folders:
+        shutil.copytree(photos, folder)
+    preset = tmp_path / "brief.json"
+    words = ("tune", "BRIEF", folders[0], "-o", preset, "--budget", "0.01s", *WORKERS)
+    answer = call(*words, "--validate", folders[1])
+    assert answer.code == 0, answer.err
+    datasets = json.loads(preset.read_text())["made"]["datasets"]
+    assert [each["name"] for each in datasets] == ["first/images", "second/images"]
+
+    twice = call(*words, "--validate", folders[0])
+    assert twice.code == 2
+    assert "2 data sets are called first/images; give each once" in twice.err
 
 
 @pytest.mark.slow

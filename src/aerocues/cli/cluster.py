@@ -59,7 +59,11 @@ def _tell(engine: DaskEngine, scheduler: str) -> None:
     if threads:
         said = f"{count(threads, 'unit')} at a time on the workers of {scheduler}"
     else:
-        said = f"no worker is there yet; start some with 'dask worker {scheduler} --nthreads 1'"
+        option = f" --resources {engine.resource}=1" if engine.resource else ""
+        said = (
+            f"no {engine.worker_wanted} is there yet; start some with "
+            f"'dask worker {scheduler} --nthreads 1{option}'"
+        )
     sys.stderr.write(f"{said}\ndashboard {engine.dashboard or 'none at this scheduler'}\n")
 
 

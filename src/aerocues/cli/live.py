@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds, told_aside
+from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds, told_aside, waiting
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.protocol import Timing
@@ -83,6 +83,9 @@ class LiveDisplay(Tally):
         from rich.text import Text
 
         for activity in self._activities:
+            if activity.waiting_for:
+                yield Text(waiting(activity), style="dim")
+                continue
             what = str(activity.call) if activity.call else "between two units"
             seconds = spoken_seconds(activity.seconds) if activity.seconds >= 1 else ""
             yield Text.assemble(

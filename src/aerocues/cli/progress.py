@@ -29,6 +29,11 @@ def spoken_seconds(seconds: float) -> str:
     return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
 
 
+def waiting(activity: Activity) -> str:
+    """``waiting for a worker, 2 min 00 s so far``."""
+    return f"waiting for {activity.waiting_for}, {spoken_seconds(activity.seconds)} so far"
+
+
 def left_out(plan: Plan) -> list[str]:
     """What the images rule out: one line a reason."""
     by_reason: dict[str, list[Exclusion]] = {}
@@ -156,6 +161,7 @@ class PlainLines(Tally):
 
     _line_time: float = 0.0
     _line_share: float = 0.0
+    _waits: bool = False
 
     def set_aside(self, rows: int) -> None:
         self._say(told_aside(rows))
@@ -176,9 +182,11 @@ class PlainLines(Tally):
     def working(self, activities: Sequence[Activity]) -> None:
         silent = self.clock() - self._line_time
         moved = self.share - self._line_share >= SHARE_BETWEEN_LINES
-        if silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
+        told = [waiting(activity) for activity in activities if activity.waiting_for]
+        begins, self._waits = bool(told) and not self._waits, bool(told)
+        if begins or silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
             self._line_time, self._line_share = self.clock(), self.share
-            self._say("; ".join(filter(None, (self.progress(), self.outcomes()))))
+            self._say("; ".join(filter(None, (*told, self.progress(), self.outcomes()))))
 
     def _say(self, line: str) -> None:
         sys.stderr.write(f"{line}\n")

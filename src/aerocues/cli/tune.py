@@ -45,7 +45,8 @@ def tune(
         str, typer.Option(metavar="CRITERION", help="cues, or a criterion such as excess_inliers.")
     ] = "cues",
     budget: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Such as 30min; none by default.")
+        str | None,
+        typer.Option(metavar="TIME", help="Such as 30min; counted anew where a search goes on."),
     ] = None,
     max_keypoints: Annotated[
         int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
@@ -55,7 +56,7 @@ def tune(
     ] = None,
     max_pairs: Annotated[
         int,
-        typer.Option(min=2, metavar="N", help="Pairs to choose by, and as many to judge by."),
+        typer.Option(min=3, metavar="N", help="Pairs to choose by, and as many to judge by."),
     ] = 16,
     max_width: Annotated[
         int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
@@ -162,16 +163,26 @@ def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
         soft_wrap=True,
     )
     print_table(console, table(tuned.findings))
-    console.print(
-        "gain: of the score on the pairs to judge by; at least: its 2.5 % quantile; figures: means"
-    )
     for line in (
+        "gain: of the score on the pairs to judge by, at least: the low end of its 95 % interval;",
+        f"figures: means{_scenes_told(tuned.findings)}",
         f"\npreset   {output}",
         f"search   {tuned.folder}",
         f"next     aerocues run {shlex.quote(datasets[0])} -o results --preset "
         f"{shlex.quote(str(output))}",
     ):
         console.print(line, soft_wrap=True, markup=False)
+
+
+def _scenes_told(findings: list[Finding]) -> str:
+    """What too few scenes to judge by mean for the intervals."""
+    from aerocues.cli.console import count
+    from aerocues.tuning.yardstick import FEWEST_SCENES
+
+    scenes = max((each.judged_by.scenes for each in findings if each.judged_by), default=0)
+    if not 0 < scenes < FEWEST_SCENES:
+        return ""
+    return f"; intervals tell of {count(scenes, 'scene')} only: judge on {FEWEST_SCENES} or more"
 
 
 def table(findings: list[Finding]) -> Table:

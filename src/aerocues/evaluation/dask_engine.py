@@ -7,18 +7,17 @@ import time
 import uuid
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aerocues.errors import EngineError
-from aerocues.evaluation.child_process import Loss
+from aerocues.evaluation.dask_losses import DaskLosses, call_of
 from aerocues.evaluation.engine import Activity, Finished, Watch
-from aerocues.evaluation.giving_up import settle_loss
 from aerocues.evaluation.run import DEFAULT_TIMEOUT
-from aerocues.evaluation.unit import Context, StageCall, Unit
+from aerocues.evaluation.unit import Context, Unit
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, KilledWorker
+    from distributed import Client, Future
 
     from aerocues.evaluation.dask_worker import Measured, Report, UnitMeasurer
 
@@ -64,8 +63,19 @@ class DaskEngine:
 
     @property
     def threads(self) -> int:
-        """Units that the workers which are there now measure at a time."""
-        return sum(self.client.nthreads().values())
+        """Units that the workers which are there now, and may get some, measure at a time."""
+        if self.resource is None:
+            return sum(self.client.nthreads().values())
+        workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
+        return sum(
+            min(worker["nthreads"], int(worker["resources"].get(self.resource, 0)))
+            for worker in workers
+        )
+
+    @property
+    def worker_wanted(self) -> str:
+        """``worker``, or ``worker with the resource NAME``."""
+        return f"worker with the resource {self.resource}" if self.resource else "worker"
 
     @property
     def dashboard(self) -> str | None:
@@ -123,11 +133,6 @@ class _Heard:
     report: Report
     time: float
 
-    @property
-    def call(self) -> StageCall | None:
-        call = self.report["call"]
-        return StageCall(**call) if call else None  # type: ignore[arg-type]
-
 
 class _Dispatch:
     """Gives units to the cluster, a bounded number at a time, and takes back what became of them.
@@ -148,7 +153,6 @@ class _Dispatch:
         self._client = engine.client
         self._resources = {engine.resource: 1} if engine.resource else None
         self._name = name
-        self._context = context
         self._queue = deque(units)
         self._given: dict[str, tuple[Future[Measured], Unit]] = {}
         self._heard: dict[str, _Heard] = {}
@@ -156,6 +160,8 @@ class _Dispatch:
         self._count = 0
         self._room = FEWEST_UNITS
         self._counted = float("-inf")
+        self._without_worker_since: float | None = None
+        self._losses = DaskLosses(context)
 
     def hear(self, event: tuple[float, Report]) -> None:
         """Take the report of a worker."""
@@ -163,12 +169,14 @@ class _Dispatch:
         if report["key"] not in self._given:
             return  # it was on its way when the unit's rows came
         self._numbers.setdefault(report["worker"], len(self._numbers))
+        self._losses.hear(report)
         self._heard[report["key"]] = _Heard(report, time.monotonic())
 
     def run(self, watch: Watch) -> Iterator[Finished]:
         """Run all units."""
         while self._queue or self._given:
             self._require_scheduler()
+            self._count_threads()
             self._fill()
             watch(self._activities())
             ended = [key for key, (future, _) in self._given.items() if future.done()]
@@ -186,14 +194,20 @@ class _Dispatch:
         if self._client.status != "running":
             raise EngineError(f"the Dask scheduler is gone; start it and {AGAIN}")
 
+    def _count_threads(self) -> None:
+        now = time.monotonic()
+        if now - self._counted <= SECONDS_BETWEEN_COUNTS:
+            return
+        self._counted = now
+        with contextlib.suppress(OSError):  # a scheduler that is gone is told elsewhere
+            threads = self._engine.threads
+            self._room = max(UNITS_PER_THREAD * threads, FEWEST_UNITS)
+            since = now if self._without_worker_since is None else self._without_worker_since
+            self._without_worker_since = None if threads else since
+
     def _fill(self) -> None:
         from aerocues.evaluation.dask_worker import measure
 
-        now = time.monotonic()
-        if now - self._counted > SECONDS_BETWEEN_COUNTS:
-            self._counted = now
-            with contextlib.suppress(OSError):  # a scheduler that is gone is told elsewhere
-                self._room = max(UNITS_PER_THREAD * self._engine.threads, FEWEST_UNITS)
         while self._queue and len(self._given) < self._room:
             unit = self._queue.popleft()
             key = f"{unit.detector}-{self._count}-{self._name}"
@@ -212,11 +226,13 @@ class _Dispatch:
 
     def _activities(self) -> list[Activity]:
         now = time.monotonic()
+        if (since := self._without_worker_since) is not None:
+            return [Activity(0, None, now - since, f"a {self._engine.worker_wanted}")]
         heard = [found for key in self._given if (found := self._heard.get(key))]
         activities = [
             Activity(
                 self._numbers[each.report["worker"]],
-                each.call,
+                call_of(each.report),
                 each.report["seconds"] + now - each.time,
             )
             for each in heard
@@ -236,7 +252,9 @@ class _Dispatch:
             self._require_scheduler()
             self._queue.appendleft(unit)  # somebody restarted the workers
         except KilledWorker as error:
-            given_up, remaining = self._killed(key, unit, error)
+            heard = self._heard.get(key)
+            report = heard.report if heard else None
+            given_up, remaining = self._losses.settle(unit, report, error)
             self._queue.extendleft(reversed(remaining))
             if given_up is not None:
                 yield given_up
@@ -246,18 +264,3 @@ class _Dispatch:
             yield from measured.finished
         del self._given[key]
         self._heard.pop(key, None)
-
-    def _killed(
-        self, key: str, unit: Unit, error: KilledWorker
-    ) -> tuple[Finished | None, list[Unit]]:
-        """Divide a unit in which several Dask workers died, one after the other."""
-        heard = self._heard.get(key)
-        if heard is None or heard.report["worker"] != error.last_worker.address:
-            return None, [unit]  # it was only waiting there: another one did it
-        deaths = error.allowed_failures + 1
-        message = (
-            f"{deaths} Dask worker{'s' if deaths > 1 else ''} died in "
-            f"{heard.call or 'this pair'}, the last at {error.last_worker.address}"
-        )
-        context = replace(self._context, machine=heard.report["machine"])
-        return settle_loss(context, unit, Loss("crashed", message, heard.call))

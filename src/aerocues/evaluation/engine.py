@@ -20,11 +20,12 @@ class Finished:
 
 @dataclass(frozen=True)
 class Activity:
-    """What one worker is doing, and for how many seconds."""
+    """What one worker is doing, and for how many seconds; or what a run without any waits for."""
 
     worker: int
     call: StageCall | None
     seconds: float
+    waiting_for: str = ""
 
 
 Watch = Callable[[Sequence[Activity]], None]

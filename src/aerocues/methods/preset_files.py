@@ -97,6 +97,28 @@ def recorded_preset(settings: Mapping[str, Any]) -> Preset:
     return preset_of(parts, "run.json") if parts else preset_named(str(settings["preset"]))
 
 
+def place_for_preset(path: Path) -> None:
+    """Make sure that a preset can be written to a file, and be used from there.
+
+    Raises
+    ------
+    SelectionError
+        If it is a folder or cannot have one, or its name is that of another preset.
+    """
+    if path.is_dir():
+        raise SelectionError(f"{path} is a folder; give a file for the preset, such as orb.json")
+    if path.stem.lower() in preset_names():
+        raise SelectionError(
+            f"{path}: {path.stem} is the name of another preset; choose a new one, such as orb.json"
+        )
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SelectionError(
+            f"{path} cannot be written ({error.strerror}: {error.filename}); choose another file"
+        ) from error
+
+
 def write_preset(path: Path, preset: Preset, made: Mapping[str, Any]) -> None:
     """Write a preset with a record of how it was made, beside its place and renamed."""
     part = path.with_name(f".{path.name}.part")

@@ -16,15 +16,15 @@ from aerocues.tuning.image_arena import criterion_values, rows_frame
 from aerocues.tuning.scales import Array
 from aerocues.tuning.splits import Split
 from aerocues.tuning.subjects import Subject
-from aerocues.tuning.yardstick import Yardstick, mean_difference, of_threshold
+from aerocues.tuning.yardstick import Yardstick, mean_gain, of_threshold
 
 # Larger grids are halved: all candidates on a part of the pairs, the better ones on the rest.
 LARGE_GRID = 9
 FIRST_PART = 0.34
 KEPT = 0.34
 FEWEST_PAIRS, FEWEST_KEPT = 3, 4
-LEAST_GAIN = 0.005
-"""In score: less is not worth a departure from the default."""
+FEWEST_TO_JUDGE = 3
+"""Pairs: two that gain by chance look like proof to any test."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,14 @@ class Figures:
     inliers: float
     true_precision: float | None
     seconds: float | None
+
+
+@dataclass(frozen=True)
+class JudgedBy:
+    """How many validation pairs a gain was found on, and of how many scenes."""
+
+    pairs: int
+    scenes: int
 
 
 @dataclass(frozen=True)
@@ -58,6 +66,8 @@ class Finding:
         Whether it is to be used.
     why_not : str
         Why it does not pay.
+    judged_by : JudgedBy or None
+        None for the default.
     """
 
     subject: Subject
@@ -70,6 +80,7 @@ class Finding:
     tuned: Figures | None
     pays: bool
     why_not: str = ""
+    judged_by: JudgedBy | None = None
 
 
 @dataclass(frozen=True)
@@ -109,11 +120,11 @@ class Search:
     def run(self, subject: Subject) -> Finding:
         """Search one subject."""
         yardstick = of_threshold() if subject.kind == "threshold" else self._yardstick
-        training = self._pairs("training")
-        if subject.kind == "threshold":
-            training = [each for each in training if self._has_truth(each)]
-            if not training:
-                return _kept(subject, 0, "no ground truth to judge thresholds by")
+        training, judging = self._pairs(subject, "training"), self._pairs(subject, "validation")
+        if subject.kind == "threshold" and not (training and judging):
+            return _kept(subject, 0, "no ground truth to judge thresholds by")
+        if len(judging) < FEWEST_TO_JUDGE:
+            return _kept(subject, 0, f"fewer than {FEWEST_TO_JUDGE} pairs to judge by")
         candidates = list(range(len(subject.settings)))
         if len(candidates) > LARGE_GRID:
             part = training[: max(round(FIRST_PART * len(training)), FEWEST_PAIRS)]
@@ -129,34 +140,46 @@ class Search:
         best = candidates[int(np.argmax(yardstick.scores(values)))]
         if not best:
             return _kept(subject, len(subject.settings), "the default is the best")
-        return self._judged(subject, best, values, yardstick)
+        return self._judged(subject, best, judging, values, yardstick)
 
     def _judged(
-        self, subject: Subject, best: int, training: Array, yardstick: Yardstick
+        self,
+        subject: Subject,
+        best: int,
+        pairs: Sequence[tuple[int, int]],
+        training: Array,
+        yardstick: Yardstick,
     ) -> Finding:
-        pairs = self._pairs("validation")
-        if subject.kind == "threshold":
-            pairs = [each for each in pairs if self._has_truth(each)]
         values = self._values(subject, [0, best], pairs, yardstick)
         setting, tried = subject.settings[best], len(subject.settings)
-        if time.monotonic() >= self._deadline or not pairs:
+        if time.monotonic() >= self._deadline:
             return _kept(subject, tried, "time was up")
         first, second = yardstick.on_others(training, values)
-        gain, low, high = mean_difference(first, second, self._seed)
+        scenes = [self._scene(each) for each in pairs]
+        gain, low, high = mean_gain(second - first, scenes)
         default, tuned = (self._figures(subject, each, pairs) for each in (0, best))
-        pays = low > 0 and gain >= LEAST_GAIN
-        why_not = "" if pays else "the gain is not sure on validation pairs"
-        return Finding(subject, tried, setting, gain, low, high, default, tuned, pays, why_not)
+        why_not = ""
+        if low <= 0:
+            why_not = "the gain is not sure on validation pairs"
+        elif gain < yardstick.least_gain(first):
+            why_not = "the gain is too small to matter"
+        judged_by = JudgedBy(len(pairs), len(set(scenes)))
+        pays, figures = not why_not, (gain, low, high, default, tuned)
+        return Finding(subject, tried, setting, *figures, pays, why_not, judged_by)
 
-    def _pairs(self, side: str) -> list[tuple[int, int]]:
-        """Field and number of each pair, the data sets and scenes mixed."""
+    def _pairs(self, subject: Subject, side: str) -> list[tuple[int, int]]:
+        """Field and number of each pair that can serve, the data sets and scenes mixed."""
         pairs = [
             (number, pair)
             for number, field in enumerate(self._fields)
             for pair in getattr(field.split, side)
         ]
         order = np.random.default_rng(self._seed).permutation(len(pairs))
-        return [pairs[place] for place in order]
+        mixed = [pairs[place] for place in order]
+        return [each for each in mixed if subject.kind != "threshold" or self._has_truth(each)]
+
+    def _scene(self, pair: tuple[int, int]) -> tuple[int, str]:
+        return pair[0], self._fields[pair[0]].bench.context.dataset.pair(pair[1]).sequence
 
     def _has_truth(self, pair: tuple[int, int]) -> bool:
         dataset = self._fields[pair[0]].bench.context.dataset

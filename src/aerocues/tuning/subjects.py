@@ -49,6 +49,18 @@ class Subject:
             "threshold": f"threshold of {detector}-{descriptor}",
         }[self.kind]
 
+    def clashes(self, other: Subject) -> bool:
+        """Whether a preset would mix what both find in a setting that nobody measured."""
+        kinds = {self.kind, other.kind}
+        same_method = self.name == other.name or (
+            kinds == {"descriptor", "pair"}
+            and self.combination.descriptor == other.combination.descriptor
+        )
+        return same_method and not self._parameters().isdisjoint(other._parameters())
+
+    def _parameters(self) -> set[str]:
+        return {name for setting in self.settings for name in setting}
+
     def variant(self, number: int) -> Combination:
         """How candidate `number` is called where it is measured; the default has its own name."""
         if not number:
@@ -119,6 +131,33 @@ def _with(
     return {**group, name: {**group.get(name, {}), **setting}}
 
 
+def subjects_named(
+    names: Sequence[str], methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
+) -> list[Subject]:
+    """What several texts ask to be searched, each once; see `subjects_of`.
+
+    Raises
+    ------
+    SelectionError
+        If there is nothing to search, or two searches would set the same parameters.
+    """
+    found: list[Subject] = []
+    for each in (subject for name in names for subject in subjects_of(name, methods, grid)):
+        if each in found:
+            continue
+        for other in found:
+            if other.clashes(each):
+                raise SelectionError(
+                    f"{other.name} in {other.combination} and {each.name} in {each.combination} "
+                    "would set the same parameters; tune one at a time, each into a preset of its "
+                    "own"
+                )
+        found.append(each)
+    if not found:
+        raise SelectionError("no method is named; give such as LATCH, ORB-BEBLID-HAM-BF or 'all'")
+    return found
+
+
 def subjects_of(
     text: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
 ) -> list[Subject]:
@@ -140,6 +179,11 @@ def subjects_of(
         If there is no such method, or nothing to try for it.
     """
     wanted = text.strip().upper()
+    if grid is not None and ("-" in wanted or wanted.rpartition(":")[2] == EVERYTHING):
+        raise SelectionError(
+            f"--grid holds values for one method, and {text.strip()} is several; name a detector "
+            "or a descriptor, such as detector:ORB"
+        )
     if "-" in wanted:
         found = _of_combination(Combination.parse(wanted), methods)
     elif grid is not None:
@@ -192,13 +236,13 @@ def _judged(detector: str, descriptor: str, methods: Methods) -> Combination:
 
 def _own_grid(wanted: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]]) -> Subject:
     kind, _, name = wanted.rpartition(":")
-    if kind.lower() != "descriptor" and name in methods.detectors:
+    if kind in ("", "DETECTOR") and name in methods.detectors:
         row = next((g for g in GRIDS if (g.kind, g.method) == ("detector", name)), None)
         combination = _judged(name, row.partner if row else "BRISK", methods)
         _check(grid, methods.detectors[name].parameters, name)
         settings = settings_of(grid, methods.detectors[name].parameters)
         return Subject("detector", combination, tuple(settings))
-    if name in methods.descriptors:
+    if kind in ("", "DESCRIPTOR") and name in methods.descriptors:
         row = next((g for g in GRIDS if (g.kind, g.method) == ("descriptor", name)), None)
         combination = _judged(row.partner if row else "ORB", name, methods)
         _check(grid, methods.descriptors[name].parameters, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -19,13 +20,13 @@ from aerocues.evaluation.unit import Context
 from aerocues.evaluation.versions import machine_name, software_versions
 from aerocues.methods.parameters import Value
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.preset_files import write_preset
+from aerocues.methods.preset_files import place_for_preset, write_preset
 from aerocues.methods.presets import Preset, preset_named
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.search import Field, Finding, Search
 from aerocues.tuning.splits import Split, given_split, split_pairs
-from aerocues.tuning.subjects import Subject, subjects_of
+from aerocues.tuning.subjects import Subject, subjects_named
 from aerocues.tuning.yardstick import CUES, yardstick
 
 PAIRS = 16
@@ -103,7 +104,7 @@ def tune(
     Parameters
     ----------
     names : sequence of str
-        See `subjects.subjects_of`.
+        See `subjects.subjects_named`.
     datasets : sequence of Dataset
     output : path
         File of the preset.
@@ -126,17 +127,16 @@ def tune(
     """
     began = time.monotonic()
     options, listener = options or TuneOptions(), listener or Listener()
-    methods = installed_methods()
-    subjects = [each for name in names for each in subjects_of(name, methods, grid)]
-    every = [*datasets, *validation]
-    if len({each.name for each in every}) < len(every):
-        raise SelectionError("two data sets have the same name; give each once")
+    file, methods, objective = Path(output), installed_methods(), yardstick(options.objective)
+    subjects = subjects_named(names, methods, grid)
+    every = _named_apart([*datasets, *validation])
+    datasets, validation = every[: len(datasets)], every[len(datasets) :]
+    place_for_preset(file)
     splits = (
         given_split(datasets, validation, options.pairs)
         if validation
         else split_pairs(datasets, options.seed, options.pairs)
     )
-    file = Path(output)
     base = preset_named("default")
     folder = Path(results) if results else file.with_name(f"{file.stem}-search")
     store = Store.create(folder)
@@ -154,7 +154,7 @@ def tune(
             fields.append(Field(bench, engines.enter_context(engine.standing(context)), split))
         search = Search(
             fields,
-            yardstick(options.objective),
+            objective,
             options.seed,
             began + options.budget,
             listener.working,
@@ -171,6 +171,29 @@ def tune(
     preset.check(methods.detectors, methods.descriptors)
     write_preset(file, preset, _made(every, splits, options, findings))
     return Tuned(preset, findings, splits, folder)
+
+
+def _named_apart(datasets: Sequence[Dataset]) -> list[Dataset]:
+    """The data sets; those of one name have the folder above them in it.
+
+    Raises
+    ------
+    SelectionError
+        If two have one name all the same.
+    """
+    counts = Counter(each.name for each in datasets)
+    named = [each if counts[each.name] == 1 else _with_folder(each) for each in datasets]
+    name, count = Counter(each.name for each in named).most_common(1)[0]
+    if count > 1:
+        raise SelectionError(
+            f"{count} data sets are called {name}; give each once, and rename those that differ"
+        )
+    return named
+
+
+def _with_folder(dataset: Dataset) -> Dataset:
+    above = Path(dataset.source.spec).parent.name if dataset.source else ""
+    return replace(dataset, name=f"{above}/{dataset.name}") if above else dataset
 
 
 def _part(dataset: Dataset, split: Split) -> Dataset:
@@ -231,6 +254,7 @@ def _made(
                 "best": dict(finding.best),
                 "gain": finding.gain,
                 "interval": [finding.low, finding.high],
+                "judged_by": asdict(finding.judged_by) if finding.judged_by else None,
                 "default": asdict(finding.default) if finding.default else None,
                 "tuned": asdict(finding.tuned) if finding.tuned else None,
                 "kept": finding.pays,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings, preset_named
@@ -13,6 +15,10 @@ from aerocues.tuning.scales import Array
 from aerocues.tuning.valuation import Valuation
 
 CUES = "cues"
+FEWEST_SCENES = 3
+"""Whose means show how far scenes differ; of fewer an interval would be endless."""
+LEAST_GAIN = 0.005
+"""In CUES, or of what the default has of a criterion: less is not worth a departure from it."""
 GEOMETRY = Criterion(
     "geometry_auc",
     column='coalesce("homography_auc@3", "pose_auc@10", 0)',
@@ -48,6 +54,11 @@ class Yardstick:
             weights = self._valuation(self._filled(training), None).weights
         return self._valued(values, values, weights)
 
+    def least_gain(self, default: Array) -> float:
+        """What a gain over these scores of the default must be to be worth it."""
+        scale = 1.0 if self.objective is not None else abs(float(default.mean()))
+        return LEAST_GAIN * scale
+
     def _valued(self, bounds: Array, values: Array, weights: Array | None) -> Array:
         filled = self._filled(values)
         if self.objective is None:
@@ -75,13 +86,19 @@ def yardstick(name: str) -> Yardstick:
     Raises
     ------
     ScoreError
-        If there is no such criterion.
+        If there is no such criterion, or it is one of 3D models.
     """
     if name.lower() == CUES:
         preset = preset_named("default")
         criteria = tuple(criteria_named(preset.criteria))
         return Yardstick(criteria, OBJECTIVES["balanced"], preset.settings)
-    return Yardstick(tuple(criteria_named([name])))
+    [criterion] = criteria_named([name])
+    if criterion.reconstruction:
+        raise ScoreError(
+            f"{criterion.name} is a figure of 3D models, which a search does not make; choose one "
+            "of image pairs, such as excess_inliers"
+        )
+    return Yardstick((criterion,))
 
 
 def of_threshold() -> Yardstick:
@@ -89,10 +106,31 @@ def of_threshold() -> Yardstick:
     return Yardstick((GEOMETRY,))
 
 
-def mean_difference(first: Array, second: Array, seed: int) -> tuple[float, float, float]:
-    """Mean of second - first over pairs, and a 95 % interval from 2,000 resamples of the pairs."""
-    difference = second - first
-    rng = np.random.default_rng(seed)
-    drawn = rng.integers(len(difference), size=(2000, len(difference)))
-    low, high = np.quantile(difference[drawn].mean(axis=1), [0.025, 0.975])
-    return float(difference.mean()), float(low), float(high)
+def mean_gain(gains: Array, scenes: Sequence[Hashable]) -> tuple[float, float, float]:
+    """Mean of the gains of pairs, and its 95 % interval: Student's t.
+
+    Pairs of one scene gain or lose together. From three scenes on, the interval therefore comes
+    from how far the means of the scenes lie apart, with the weights that they have in the mean over
+    the pairs, and tells of other scenes, too. Fewer scenes tell nothing of others: the interval
+    then comes from the pairs, and tells of these scenes only.
+
+    Parameters
+    ----------
+    gains : (P,) float64
+        Of two pairs at least.
+    scenes : sequence of hashable
+        The scene of each pair.
+    """
+    # scipy.stats.t has the same quantiles, but takes most of a second to load.
+    from scipy.special import stdtrit
+
+    groups, weights = gains, np.full(len(gains), 1 / len(gains))
+    names = list(dict.fromkeys(scenes))
+    if len(names) >= FEWEST_SCENES:
+        member = np.array([[scene == name for name in names] for scene in scenes], np.float64)
+        weights = member.mean(axis=0)
+        groups = gains @ member / member.sum(axis=0)
+    mean = float(gains.mean())
+    error = groups.std(ddof=1) * np.sqrt((weights**2).sum())
+    reach = float(stdtrit(len(groups) - 1, 0.975) * error)
+    return mean, mean - reach, mean + reach
