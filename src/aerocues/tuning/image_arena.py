@@ -90,8 +90,8 @@ class ImageArena:
         self._has_measured |= bool(rows)
         if missing and not self._has_measured:
             raise self._session.too_small(
-                f"{len(self._pairs)} of the pairs were seen to show the same things, and then no "
-                "combination could be measured in time"
+                "images that show the same things were found, but no combination could be "
+                "measured on them in time"
             )
         return self._values({cell: row for cell, row in rows.items() if row is not None})
 

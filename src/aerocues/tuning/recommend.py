@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -186,6 +187,7 @@ def recommend(
         If the images show nothing in common, nothing succeeds, or budget or choice are too small.
     """
     options, follower = options or RaceOptions(), follower or Follower()
+    began = time.monotonic() if options.began is None else options.began
     objective, parts = objective_named(options.objective), as_preset(preset)
     pairs = spread_pairs(dataset.pairs, options.pairs, options.seed)
     part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
@@ -196,7 +198,7 @@ def recommend(
     with store.writing(), engine_here.standing(context) as engine:
         benches = _benches(context, chosen, store, parts, follower.hashing)
         journal = Journal.read(store.folder, _key(benches, chosen, options), options.budget)
-        session = Session(journal, began=options.began, watch=follower.working)
+        session = Session(journal, began=began, watch=follower.working)
         follower.looking(len(pairs))
         with engine_here.standing(benches.looking.context) as other:
             eyes = engine if benches.looking is benches.racing else other

@@ -11,7 +11,7 @@ from aerocues.tuning.bench import Bench, Measurement
 from aerocues.tuning.journal import Journal, Step
 
 # Less than this much more seldom helps where a budget was too small.
-MORE = 4.0
+MORE = 3.0
 BUDGETS = (10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 
 
