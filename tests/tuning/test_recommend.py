@@ -138,6 +138,17 @@ def test_a_budget_that_is_too_small_is_told_at_once(
                      answer.err, re.MULTILINE)  # fmt: skip
 
 
+def test_other_parameters_are_another_race(call: Call, photos: Path, tmp_path: Path) -> None:
+    preset, output = tmp_path / "mine.json", tmp_path / "race"
+    two = ("--combinations", "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-BF", *SHORT)
+    for levels in (8, 4, 4):
+        content = {"name": "mine", "title": "", "chance_test": True}
+        preset.write_text(json.dumps({**content, "detectors": {"ORB": {"nlevels": levels}}}))
+        answer = call("recommend", photos, "-o", output, "--preset", preset, *two)
+        assert answer.code == 0, answer.err
+    assert len(json.loads((output / "race.json").read_text())) == 2
+
+
 def test_the_next_commands_have_the_options_and_suit_the_images(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:

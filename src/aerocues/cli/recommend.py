@@ -111,11 +111,7 @@ def recommend(
 
     with interruptible():
         dataset = open_dataset(
-            images,
-            pairs=pairs,
-            max_width=max_width or None,
-            equalize=equalize,
-            subset=subset,
+            images, pairs=pairs, max_width=max_width or None, equalize=equalize, subset=subset
         )
         options = RaceOptions(
             budget=parse_duration(budget, "--budget"),
@@ -136,10 +132,8 @@ def recommend(
         found = _race(dataset, options, arguments)
         _print(found, top, explain=explain)
         width = _shrunk(dataset, max_width)
-        _print_next(
-            found,
-            AsMeasured(images, pairs, subset, equalize, width, preset, max_keypoints, seed),
-        )
+        same = AsMeasured(images, pairs, subset, equalize, width, preset, max_keypoints, seed)
+        _print_next(found, same)
         if report is not None:
             _write_report(found, report)
 

@@ -22,7 +22,7 @@ from aerocues.methods.selection import select
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import Objective, objective_named
-from aerocues.scoring.settings import preset_named
+from aerocues.scoring.settings import ScorePreset, preset_named
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_arena import ImageArena
@@ -101,6 +101,12 @@ class RaceOptions:
             raise SelectionError("--sure is a probability from 0.5 to 1; give it such as 0.95")
         if self.pairs < FEWEST_PAIRS:
             raise SelectionError("--max-pairs must be 2 or more: one pair says nothing of others")
+
+    def settings(self, objective: Objective, scoring: ScorePreset) -> RaceSettings:
+        """Of the race itself."""
+        return RaceSettings(
+            self.budget, self.seed, sure=self.sure, score=scoring.settings, objective=objective
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,14 +215,7 @@ def recommend(
         arena = ImageArena(
             benches.racing, engine, chosen, seen.overlapping, criteria, session, options.device
         )
-        settings = RaceSettings(
-            options.budget,
-            options.seed,
-            sure=options.sure,
-            score=scoring.settings,
-            objective=objective,
-        )
-        outcome = race(arena, settings, follower.round)
+        outcome = race(arena, options.settings(objective, scoring), follower.round)
     return Recommendation(
         part,
         seen,
