@@ -87,6 +87,15 @@ def test_a_clear_winner_ends_the_race() -> None:
     assert outcome.rounds[-1].leader == place.alternatives[outcome.order[0]]
 
 
+def test_a_race_is_not_sure_of_what_was_hardly_measured() -> None:
+    for seed in range(3):
+        _, outcome = run(seed, share=5.0, sure=0.5)
+        assert outcome.ended == "sure"
+        assert outcome.known[outcome.order[0]].sum() >= 5
+        rivals = outcome.probability > 0
+        assert outcome.known[rivals].sum(axis=1).min() >= 2
+
+
 def test_the_same_seed_gives_the_same_race() -> None:
     first, second = run(3)[1], run(3)[1]
     np.testing.assert_array_equal(first.scores, second.scores)

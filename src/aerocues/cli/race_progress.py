@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from aerocues.cli.console import count
+from aerocues.cli.console import count, likelihood
 from aerocues.cli.progress import spoken_seconds
 from aerocues.evaluation.engine import Activity
 from aerocues.tuning.race import Round
@@ -41,7 +41,8 @@ class RaceLines(Follower):
         return (
             f"{spoken_seconds(finished.spent)} of {spoken_seconds(self._budget)}: "
             f"{count(finished.measured, 'measurement')}, {finished.leader} leads "
-            f"({finished.probability:.0%}), {finished.contenders} may still be among the best"
+            f"({likelihood(finished.probability)}), {finished.contenders} may still be among the "
+            "best"
         )
 
     def _say(self, line: str) -> None:

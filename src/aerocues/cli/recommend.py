@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+import time
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,11 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from aerocues.cli.next_commands import AsMeasured
     from aerocues.datasets.dataset import Dataset
     from aerocues.tuning.recommend import RaceOptions, Recommendation
 
 WIDTH = 1000
-# As many as `aerocues reconstruct` takes.
+# As `aerocues.cli.next_commands.KEYPOINTS`: as many as `aerocues reconstruct` takes.
 KEYPOINTS = 8000
 
 
@@ -99,19 +101,17 @@ def recommend(
     Combinations race on pairs of the images: cheap ones are looked at first, then those that can
     still win. Stop at any moment and run the same command again: it goes on.
     """
+    began = time.monotonic()
     from aerocues.cli.durations import parse_duration
     from aerocues.cli.interruption import interruptible
+    from aerocues.cli.next_commands import AsMeasured
     from aerocues.datasets.catalog import open_dataset
     from aerocues.tuning.device import read_device
     from aerocues.tuning.recommend import RaceOptions
 
     with interruptible():
         dataset = open_dataset(
-            images,
-            pairs=pairs,
-            max_width=max_width or None,
-            equalize=equalize,
-            subset=subset,
+            images, pairs=pairs, max_width=max_width or None, equalize=equalize, subset=subset
         )
         options = RaceOptions(
             budget=parse_duration(budget, "--budget"),
@@ -120,6 +120,7 @@ def recommend(
             pairs=max_pairs,
             seed=seed,
             device=read_device(device) if device else None,
+            began=began,
         )
         arguments = {
             "output": output or Path(f"{dataset.name}-race"),
@@ -130,7 +131,9 @@ def recommend(
         }
         found = _race(dataset, options, arguments)
         _print(found, top, explain=explain)
-        _print_next(found, images, preset, max_keypoints, _shrunk(dataset, max_width))
+        width = _shrunk(dataset, max_width)
+        same = AsMeasured(images, pairs, subset, equalize, width, preset, max_keypoints, seed)
+        _print_next(found, same)
         if report is not None:
             _write_report(found, report)
 
@@ -187,27 +190,16 @@ def _shrunk(dataset: Dataset, max_width: int) -> int:
     return max_width if width == max_width else 0
 
 
-def _print_next(
-    found: Recommendation, images: str, preset: str, max_keypoints: int, max_width: int
-) -> None:
+def _print_next(found: Recommendation, measured: AsMeasured) -> None:
     from aerocues.cli.console import standard_output
+    from aerocues.cli.next_commands import next_commands
 
-    told = [shlex.quote(images)]
-    told += ["--max-width", f"{max_width}"] if max_width else []
-    told += ["--preset", shlex.quote(preset)] if preset != "default" else []
-    same = " ".join(told)
-    limit = f" --max-keypoints {max_keypoints}" if max_keypoints else ""
-    for_models = f" --max-keypoints {max_keypoints}" if max_keypoints != KEYPOINTS else ""
-    few = ",".join(found.ranked["combination"].head(3))
-    folder = shlex.quote(str(found.folder))
     console = standard_output()
-    for line in (
-        f"\nresults  {folder}",
-        f"next     aerocues reconstruct {same} -o models{for_models} --combinations {found.best}",
-        f"         aerocues run {same} -o results{limit} --combinations '{few}'",
-        f"         aerocues report {folder}",
-    ):
-        console.print(line, soft_wrap=True, markup=False)
+    console.print(f"\nresults  {shlex.quote(str(found.folder))}", soft_wrap=True, markup=False)
+    label = "next"
+    for command in next_commands(found, measured):
+        console.print(f"{label:9}{command}", soft_wrap=True, markup=False)
+        label = ""
 
 
 def _write_report(found: Recommendation, file: Path) -> None:

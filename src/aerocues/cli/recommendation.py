@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from aerocues.cli.console import count, plain_table
+from aerocues.cli.console import count, likelihood, plain_table
 from aerocues.cli.progress import spoken_seconds
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ FASTER = 2.0
 ENDS = {
     "budget": "the budget is spent",
     "sure": "sure enough",
-    "measured": "nothing is left to measure",
+    "measured": "all that may win are measured on all pairs",
 }
 
 
@@ -76,11 +76,11 @@ def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
         f"{count(measured, 'measurement')} of {count(found.measured, 'combination')} on "
         f"{count(len(found.seen.overlapping), 'pair')} in {spent} ({ENDS[outcome.ended]})"
     )
-    told = f"the best of {found.combinations} for {found.objective.title}"
+    told = f"the best of {found.combinations} for {found.objective.title} on these pairs"
     if chance >= PROBABLE:
-        first = f"With a probability of {chance:.0%} it is {told}"
+        first = f"With a probability of {likelihood(chance)} it is {told}"
     else:
-        first = f"It leads as {told}, though with a probability of {chance:.0%} only"
+        first = f"It leads as {told}, though with a probability of {likelihood(chance)} only"
     names = possible_winners(found.ranked)
     others = [name for name in names if name != found.best]
     if not others:
@@ -110,10 +110,16 @@ def _why(found: Recommendation, best: dict[str, Any]) -> list[str]:
     beyond = "precision_beyond_chance" if best["excess_inliers"] is not None else "precision"
     inliers = "excess_inliers" if best["excess_inliers"] is not None else "inliers"
     what = " beyond chance" if inliers == "excess_inliers" else ""
+    number, ratio = f"{best[inliers]:,.0f} inliers{what} a pair", f"{best[beyond]:.3f}"
+    if others == 1:
+        number += "; no other combination succeeded"
+    else:
+        number += f"; the median of the {others} combinations that succeeded is "
+        number += f"{median(inliers):,.0f}"
+        ratio += f" ({median(beyond):.3f})"
     return [
-        f"{best[inliers]:,.0f} inliers{what} a pair; the median of the {others} combinations that "
-        f"succeeded is {median(inliers):,.0f}",
-        f"inlier ratio{what} {best[beyond]:.3f} ({median(beyond):.3f})",
+        number,
+        f"inlier ratio{what} {ratio}",
         f"{best['succeeded']} of {count(best['pairs'], 'pair')} succeeded",
     ]
 
@@ -151,9 +157,14 @@ def _notes(found: Recommendation) -> list[str]:
         )
     stood = len(found.seen.overlapping) + len(found.seen.others)
     if stood < found.candidates:
-        notes.append(f"{stood} pairs, spread evenly, stand for all {found.candidates}")
+        why = "; a larger --budget looks at more" if found.seen.unseen else ""
+        stand = "stands" if stood == 1 else "stand"
+        notes.append(
+            f"{count(stood, 'pair')}, spread evenly, {stand} for all {found.candidates}{why}"
+        )
     if len(found.seen.overlapping) < 5:
-        notes.append("fewer than 5 pairs tell little of others; give more images that overlap")
+        more = "" if found.seen.unseen else "; give more images that overlap"
+        notes.append(f"fewer than 5 pairs tell little of others{more}")
     return notes
 
 
@@ -170,7 +181,7 @@ def ranking(found: Recommendation, top: int) -> Table:
             f"{rank}",
             row["combination"],
             f"{row['score']:.3f}",
-            f"{row['probability']:.0%}",
+            likelihood(row["probability"]),
             f"{row['succeeded']}/{row['pairs']}",
             f"{row[ratio]:.3f}",
             f"{row[inliers]:,.0f}",
@@ -189,6 +200,6 @@ def story(outcome: RaceOutcome) -> Table:
             f"{each.spent:.0f}",
             f"{each.measured:,}",
             f"{each.contenders}",
-            f"{each.probability:.0%}",
+            likelihood(each.probability),
         )
     return table

@@ -41,6 +41,8 @@ class Bench:
         Recorded with the results.
     hashing : callable
         Told how many of all images have been read.
+    clock : callable
+        Gives the seconds that deadlines are compared with.
     """
 
     def __init__(
@@ -50,8 +52,11 @@ class Bench:
         store: Store,
         preset: Preset,
         hashing: Callable[[int, int], None] = lambda done, total: None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.context = context
+        self._clock = clock
         self._store = store
         self.plan: Plan = make_plan(context, combinations, lambda _: False, hashing)
         self._planned = {(row.pair, row.combination): row for row in self.plan.rows}
@@ -91,7 +96,7 @@ class Bench:
         measurements : iterable of Measurement
         engine : Engine
         deadline : float
-            By `time.monotonic`.
+            By the clock of the bench.
         watch : callable
             Told what the workers are doing.
 
@@ -104,11 +109,11 @@ class Bench:
         missing = [row for row in rows if row.row_key not in self._rows]
         if rows:
             self._store.write_plan(planned_table(self.context, self._dataset_key, rows))
-        if not missing:
+        if not missing or self._clock() >= deadline:
             return
 
         def look(activities: Sequence[Activity]) -> None:
-            if time.monotonic() >= deadline:
+            if self._clock() >= deadline:
                 raise _TimeIsUpError
             watch(activities)
 

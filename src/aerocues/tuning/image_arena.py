@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.engine import Engine
 from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
 from aerocues.scoring.combinations import SUCCESS
 from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.long_form import values_of
+from aerocues.tuning.arena import Cell
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.costs import Costs
 from aerocues.tuning.device import Device
-from aerocues.tuning.journal import Journal
-from aerocues.tuning.race import Cell
+from aerocues.tuning.layout import blocks_of
 from aerocues.tuning.scales import Array
+from aerocues.tuning.session import Session
 
 if TYPE_CHECKING:
     import polars as pl
@@ -29,10 +28,7 @@ COMPONENTS = ("detector", "descriptor", "norm", "matcher")
 
 
 class ImageArena:
-    """Measures combinations on the pairs of a bench; see `race.Arena`.
-
-    What its journal tells of an earlier, interrupted race is gone through again without measuring,
-    so that the same decisions are taken.
+    """Measures combinations on the pairs of a bench; see `arena.Arena`.
 
     Parameters
     ----------
@@ -42,13 +38,10 @@ class ImageArena:
     pairs : sequence of int
         Numbers of the pairs.
     criteria : sequence of Criterion
-    journal : Journal
-    budget : float
-        Wall seconds, those that the journal has recorded among them.
+    session : Session
+        Whose time it takes.
     device : Device, optional
         Whose times count, in place of this machine's.
-    watch : callable, optional
-        Told what the workers are doing.
     """
 
     def __init__(
@@ -58,56 +51,49 @@ class ImageArena:
         combinations: Sequence[Combination],
         pairs: Sequence[int],
         criteria: Sequence[Criterion],
-        journal: Journal,
-        budget: float,
-        *,
-        began: float | None = None,
+        session: Session,
         device: Device | None = None,
-        watch: Callable[[Sequence[Activity]], None] = lambda _: None,
     ) -> None:
         self.alternatives: Sequence[str] = [str(combination) for combination in combinations]
         self.components: Mapping[str, Sequence[str]] = {
             name: [getattr(each, name) for each in combinations] for name in COMPONENTS
         }
-        self.blocks = _blocks(bench, pairs)
+        self.blocks = blocks_of([bench.context.dataset.pair(pair) for pair in pairs])
         self.criteria = criteria
-        self.spent = 0.0
-        self._bench, self._engine, self._watch = bench, engine, watch
-        self._combinations, self._pairs = combinations, pairs
-        self._journal, self._budget, self._device = journal, budget, device
-        self._recorded = list(journal.steps)
-        self._began = (time.monotonic() if began is None else began) - journal.spent
+        self._bench, self._engine, self._session = bench, engine, session
+        self._combinations, self._pairs, self._device = combinations, pairs, device
         self._costs = Costs(bench.context.methods, combinations)
+        self._has_measured = False
         self.predicted_seconds = self._costs.predicted()
 
-    def measure(self, cells: Sequence[Cell]) -> dict[Cell, Array]:
+    @property
+    def spent(self) -> float:
+        """Wall seconds of the session, with those that are kept for the end."""
+        return self._session.spent
+
+    def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> dict[Cell, Array]:
+        """Values of what could be measured in time; see `arena.Arena`.
+
+        Raises
+        ------
+        SelectionError
+            If time is up before anything is measured.
+        """
         measurements = [(self._pairs[p], self._combinations[a]) for a, p in cells]
         asked = [each for each in measurements if self._bench.possible(each)]
-        if self._recorded:
-            self.spent, missing = self._recorded.pop(0)
-        else:
-            missing = self._work(asked)
+        missing = self._session.measure(self._bench, self._engine, asked, keep=keep)
         rows = {
             cell: self._bench.row(each)
             for cell, each in zip(cells, measurements, strict=True)
             if self._bench.possible(each) and self._bench.row_key(each) not in missing
         }
+        self._has_measured |= bool(rows)
+        if missing and not self._has_measured:
+            raise self._session.too_small(
+                "images that show the same things were found, but no combination could be "
+                "measured on them in time"
+            )
         return self._values({cell: row for cell, row in rows.items() if row is not None})
-
-    def _work(self, asked: Sequence[tuple[int, Combination]]) -> list[str]:
-        """Measure, and give back the keys of the rows that were not obtained in time."""
-        deadline = self._began + self._budget
-        finished = False
-        try:
-            self._bench.measure(asked, self._engine, deadline=deadline, watch=self._watch)
-            finished = True
-        finally:
-            self.spent = time.monotonic() - self._began
-            if not finished:
-                self._journal.interrupt(self.spent)
-        missing = [self._bench.row_key(each) for each in asked if self._bench.row(each) is None]
-        self._journal.add(self.spent, missing)
-        return missing
 
     def _values(self, rows: dict[Cell, Row]) -> dict[Cell, Array]:
         if not rows:
@@ -140,8 +126,3 @@ def rows_frame(rows: Sequence[Row]) -> pl.DataFrame:
     from aerocues.evaluation.schema import polars_schema
 
     return pl.DataFrame(rows, schema=polars_schema(), orient="row")
-
-
-def _blocks(bench: Bench, pairs: Sequence[int]) -> NDArray[np.int64]:
-    sequences = [bench.context.dataset.pair(pair).sequence for pair in pairs]
-    return np.unique(sequences, return_inverse=True)[1].astype(np.int64)

@@ -8,45 +8,33 @@ combinations that come out on top are measured next, the cheaper and less measur
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
-from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings
+from aerocues.tuning.arena import Arena, Cell
+from aerocues.tuning.layout import KIND, features, spread_order
 from aerocues.tuning.scales import Array, Mask, Scales
 from aerocues.tuning.surrogate import Surrogate, fit
-from aerocues.tuning.valuation import Valuation
+from aerocues.tuning.valuation import Valuation, chances, interest_of
 
-Cell = tuple[int, int]
 Ended = Literal["budget", "sure", "measured"]
 FEW = 5
 _MOST_BLOCKS = 8
-KIND = ("detector", "descriptor")
 _FEWEST_PAIRS = 2
-
-
-class Arena(Protocol):
-    """Where combinations compete."""
-
-    alternatives: Sequence[str]
-    components: Mapping[str, Sequence[str]]
-    """The methods of each alternative, by what they are: detector, descriptor, matcher."""
-    blocks: NDArray[np.int64]
-    """(P,) scene or sequence of each pair."""
-    criteria: Sequence[Criterion]
-    predicted_seconds: Array
-    """(A,) roughly what an alternative costs on a pair."""
-    spent: float
-    """Seconds that all measurements so far took."""
-
-    def measure(self, cells: Sequence[Cell]) -> Mapping[Cell, Array]:
-        """Values (C,) of alternatives on pairs, NaN where one failed; none if time was up."""
+# Fewer say too little of a winner to end the race early.
+_PAIRS_OF_WINNER = 5
+# What drawing a table takes a value or feature on a busy machine, until it is seen here; and what
+# else follows the last measurement.
+_DRAW_SECONDS = 1.6e-7
+_END_SECONDS = 1.0
 
 
 @dataclass(frozen=True)
@@ -59,7 +47,8 @@ class RaceSettings:
         Seconds of the arena.
     seed : int
     sure : float
-        Probability of the leader at which the race ends.
+        Probability of the leader at which the race ends, once the leader was measured on 5 pairs
+        and everything else that may win on 2.
     look : float
         Share of the budget for a look at each detector and descriptor together.
     cheapest : float
@@ -118,11 +107,13 @@ class RaceOutcome:
     scores : (A,) float64
         CUES that are expected of a full measurement.
     probability : (A,) float64
-        Share of the last draws in which an alternative was the best.
+        Share of the last draws in which an alternative was the best: on these pairs, for what is
+        measured counts as it is.
     known : (A, P) bool
         What was measured.
     ended : {"budget", "sure", "measured"}
-        Why: the budget was spent, the leader was sure enough, or nothing was left to measure.
+        Why: the budget was spent, the leader was sure enough, or all that may win was measured on
+        all pairs.
     rounds : list of Round
     """
 
@@ -139,7 +130,10 @@ class RaceOutcome:
 
 
 def race(
-    arena: Arena, settings: RaceSettings, told: Callable[[Round], None] | None = None
+    arena: Arena,
+    settings: RaceSettings,
+    told: Callable[[Round], None] | None = None,
+    clock: Callable[[], float] = time.monotonic,
 ) -> RaceOutcome:
     """Run a race; the same arena and seed give the same answer.
 
@@ -149,6 +143,8 @@ def race(
     settings : RaceSettings
     told : callable, optional
         Told of each round.
+    clock : callable
+        Gives seconds, to tell what the end will take.
 
     Raises
     ------
@@ -157,20 +153,27 @@ def race(
     """
     if len(arena.alternatives) < 2 or not len(arena.blocks):
         raise ScoreError("a race needs two alternatives and a pair; give more")
-    return _Race(arena, settings, told or (lambda _: None)).run()
+    return _Race(arena, settings, told or (lambda _: None), clock).run()
 
 
 class _Race:
-    def __init__(self, arena: Arena, settings: RaceSettings, told: Callable[[Round], None]) -> None:
-        self._arena, self._settings, self._told = arena, settings, told
+    def __init__(
+        self,
+        arena: Arena,
+        settings: RaceSettings,
+        told: Callable[[Round], None],
+        clock: Callable[[], float],
+    ) -> None:
+        self._arena, self._settings, self._told, self._clock = arena, settings, told, clock
         self._rng = np.random.default_rng(settings.seed)
         shape = (len(arena.alternatives), len(arena.blocks))
         self._known = np.zeros(shape, np.bool_)
         self._values = np.full((*shape, len(arena.criteria)), np.nan)
         self._is_cost = np.array([each.better == "lower" for each in arena.criteria])
-        self._features, self._groups = _features(arena.components)
-        self._order = _spread_order(arena.blocks, self._rng)
+        self._features, self._groups = features(arena.components)
+        self._order = spread_order(arena.blocks, self._rng)
         self._rounds: list[Round] = []
+        self._draw_seconds = _DRAW_SECONDS * (self._values.size + self._features.size)
 
     def run(self) -> RaceOutcome:
         self._measure(self._look_at_kinds(), self._settings.look * self._settings.budget)
@@ -178,17 +181,20 @@ class _Race:
         while True:
             surrogate, scales = self._fit()
             scores, drawn = self._score(surrogate, scales, self._settings.draws)
-            interest = _interest(drawn)
+            interest = interest_of(drawn, FEW)
             leader = int(np.argmax(scores))
-            chance = float(_chances(drawn)[leader])
+            chance = float(chances(drawn)[leader])
             self._tell(leader, chance, int((interest > 0).sum()))
             cells = self._next(interest)
-            ended = self._ended(chance, more=bool(cells))
+            ended = self._ended(leader, chance, interest, more=bool(cells))
             if ended is not None:
                 drawn = self._score(surrogate, scales, self._settings.last_draws)[1]
-                probability = _chances(drawn)
-                if ended != "sure" or probability[leader] >= self._settings.sure:
+                probability = chances(drawn)
+                doubtful = self._hardly_seen(leader, probability)
+                sure = probability[leader] >= self._settings.sure and not doubtful.any()
+                if ended != "sure" or sure:
                     return RaceOutcome(scores, probability, self._known, ended, self._rounds)
+                cells = self._next(np.where(doubtful, probability, 0.0)) or cells
             self._measure(cells)
 
     def _tell(self, leader: int, chance: float, contenders: int) -> None:
@@ -196,12 +202,23 @@ class _Race:
         self._rounds.append(Round(spent, int(self._known.sum()), contenders, name, chance))
         self._told(self._rounds[-1])
 
-    def _ended(self, chance: float, *, more: bool) -> Ended | None:
+    def _ended(self, leader: int, chance: float, interest: Array, *, more: bool) -> Ended | None:
         if self._arena.spent >= self._settings.budget:
             return "budget"
         if not more:
             return "measured"
-        return "sure" if chance >= self._settings.sure < 1.0 else None
+        sure = chance >= self._settings.sure < 1.0
+        return "sure" if sure and not self._hardly_seen(leader, interest).any() else None
+
+    def _hardly_seen(self, leader: int, interest: Array) -> Mask:
+        """(A,) whether the leader or what may win was measured on too few pairs to end early.
+
+        What is measured counts as certain, so that a single lucky pair may look like a sure win.
+        """
+        counts, pairs = self._known.sum(axis=1), self._known.shape[1]
+        enough = np.full(len(counts), min(_FEWEST_PAIRS, pairs))
+        enough[leader] = min(_PAIRS_OF_WINNER, pairs)
+        return np.asarray((counts < enough) & (interest > 0))
 
     def _look_at_kinds(self) -> list[Cell]:
         """The cheapest alternative of each detector and descriptor on one pair, cheap ones first.
@@ -231,9 +248,14 @@ class _Race:
             if start and self._arena.spent >= limit:
                 return
             batch = cells[start : start + self._settings.batch]
-            for (alternative, pair), values in self._arena.measure(batch).items():
+            for (alternative, pair), values in self._arena.measure(batch, self._keep()).items():
                 self._values[alternative, pair] = values
                 self._known[alternative, pair] = True
+
+    def _keep(self) -> float:
+        """Seconds that the end takes: the tables of the last round and of the last draws."""
+        draws = self._settings.draws + self._settings.last_draws
+        return draws * self._draw_seconds + _END_SECONDS
 
     def _fit(self) -> tuple[Surrogate, Scales]:
         measured = self._values[self._known]
@@ -251,12 +273,14 @@ class _Race:
     def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
         """Scores (A,) expected, and (draws, A) of drawn tables."""
         settings, arena = self._settings, self._arena
+        began = self._clock()
         whole = scales.shrink(surrogate.expected)
         value = Valuation(whole, arena.criteria, arena.blocks, settings.score, settings.objective)
         drawn = []
         for _ in range(draws):
             other = scales.shrink(surrogate.draw(self._rng))
             drawn.append(value.of(np.where(self._known[..., None], whole, other)))
+        self._draw_seconds = (self._clock() - began) / draws
         return value.of(whole), np.array(drawn)
 
     def _next(self, interest: Array) -> list[Cell]:
@@ -272,43 +296,3 @@ class _Race:
             if worth[alternative] <= 0 or len(chosen) == self._settings.batch:
                 break
         return chosen
-
-
-def _chances(drawn: Array) -> Array:
-    """(A,) share of the drawn tables in which an alternative is the best."""
-    best = np.argmax(drawn, axis=1)
-    return np.asarray(np.bincount(best, minlength=drawn.shape[1]) / len(drawn))
-
-
-def _interest(drawn: Array) -> Array:
-    """(A,) share of the drawn tables in which it is the best, and among the few best."""
-    few = np.argsort(-drawn, axis=1, kind="stable")[:, :FEW]
-    among = np.bincount(few.ravel(), minlength=drawn.shape[1]) / len(drawn)
-    return np.asarray(_chances(drawn) + among)
-
-
-def _features(components: Mapping[str, Sequence[str]]) -> tuple[Array, NDArray[np.int64]]:
-    """(A, K): 1 for each method that an alternative is made of; and (K,) the group of each column.
-
-    Detector and descriptor together are a method, too: what they make of each other.
-    """
-    labelled = list(components.values())
-    if set(KIND) <= set(components):
-        labelled.append(
-            ["-".join(pair) for pair in zip(*(components[k] for k in KIND), strict=True)]
-        )
-    columns, groups = [], []
-    for group, labels in enumerate(labelled):
-        for name in sorted(set(labels)):
-            columns.append([float(label == name) for label in labels])
-            groups.append(group)
-    return np.array(columns).T, np.array(groups)
-
-
-def _spread_order(blocks: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.intp]:
-    """Pairs in random order, one of each block, then the second of each, and so on."""
-    place = np.zeros(len(blocks), np.intp)
-    for block in np.unique(blocks):
-        members = np.flatnonzero(blocks == block)
-        place[rng.permutation(members)] = np.arange(len(members))
-    return np.lexsort((rng.permutation(len(blocks)), place))

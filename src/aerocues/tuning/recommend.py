@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,19 +22,21 @@ from aerocues.methods.selection import select
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import Objective, objective_named
-from aerocues.scoring.settings import preset_named
+from aerocues.scoring.settings import ScorePreset, preset_named
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_arena import ImageArena
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.race import RaceOutcome, RaceSettings, Round, race
 from aerocues.tuning.representative import (
+    FEWEST_PAIRS,
     MOST_PAIRS,
     Seen,
     look_for_overlap,
     probes,
     spread_pairs,
 )
+from aerocues.tuning.session import Session
 from aerocues.tuning.standing import standing
 
 if TYPE_CHECKING:
@@ -42,8 +44,6 @@ if TYPE_CHECKING:
 
 BUDGET = 300.0
 SURE = 0.95
-# Fewer pairs tell next to nothing of the others.
-FEWEST_PAIRS = 2
 
 
 class Follower:
@@ -72,7 +72,7 @@ class RaceOptions:
     Parameters
     ----------
     budget : float
-        Wall seconds in all, from the first reading of images on.
+        Wall seconds in all.
     objective : str
         A row of `scoring.objectives.OBJECTIVES`.
     sure : float
@@ -82,6 +82,8 @@ class RaceOptions:
     seed : int
     device : Device, optional
         Whose times count; this machine's by default.
+    began : float, optional
+        From when on the budget counts, by `time.monotonic`; the call by default.
     """
 
     budget: float = BUDGET
@@ -90,6 +92,7 @@ class RaceOptions:
     pairs: int = MOST_PAIRS
     seed: int = 0
     device: Device | None = None
+    began: float | None = None
 
     def __post_init__(self) -> None:
         if self.budget <= 0:
@@ -98,6 +101,12 @@ class RaceOptions:
             raise SelectionError("--sure is a probability from 0.5 to 1; give it such as 0.95")
         if self.pairs < FEWEST_PAIRS:
             raise SelectionError("--max-pairs must be 2 or more: one pair says nothing of others")
+
+    def settings(self, objective: Objective, scoring: ScorePreset) -> RaceSettings:
+        """Of the race itself."""
+        return RaceSettings(
+            self.budget, self.seed, sure=self.sure, score=scoring.settings, objective=objective
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,51 +190,39 @@ def recommend(
     Raises
     ------
     AerocuesError
-        If the images show nothing in common, nothing succeeds, or the choice is too small.
+        If the images show nothing in common, nothing succeeds, or budget or choice are too small.
     """
-    began = time.monotonic()
     options, follower = options or RaceOptions(), follower or Follower()
+    began = time.monotonic() if options.began is None else options.began
     objective, parts = objective_named(options.objective), as_preset(preset)
-    pairs = spread_pairs(dataset.pairs, options.pairs)
+    pairs = spread_pairs(dataset.pairs, options.pairs, options.seed)
     part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
     context = make_context(part, parts, seed=options.seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
     store = Store.create(Path(output))
     engine_here = local_engine(limits or Limits(), "estimated")
     with store.writing(), engine_here.standing(context) as engine:
-        asked = list(dict.fromkeys([*chosen, *probes()]))
-        bench = Bench(context, asked, store, parts, follower.hashing)
+        benches = _benches(context, chosen, store, parts, follower.hashing)
+        journal = Journal.read(store.folder, _key(benches, chosen, options), options.budget)
+        session = Session(journal, began=began, watch=follower.working)
         follower.looking(len(pairs))
-        seen = look_for_overlap(bench, engine, pairs)
+        with engine_here.standing(benches.looking.context) as other:
+            eyes = engine if benches.looking is benches.racing else other
+            seen = look_for_overlap(benches.looking, eyes, pairs, session, options.seed)
         follower.racing(len(chosen), len(seen.overlapping))
         scoring = preset_named("default" if parts.chance_test else "thesis")
+        criteria = criteria_named(objective.criteria(scoring.criteria))
         arena = ImageArena(
-            bench,
-            engine,
-            chosen,
-            seen.overlapping,
-            criteria_named(objective.criteria(scoring.criteria)),
-            Journal.read(store.folder, _journal_key(bench, chosen, seen, options)),
-            options.budget,
-            began=began,
-            device=options.device,
-            watch=follower.working,
+            benches.racing, engine, chosen, seen.overlapping, criteria, session, options.device
         )
-        settings = RaceSettings(
-            options.budget,
-            options.seed,
-            sure=options.sure,
-            score=scoring.settings,
-            objective=objective,
-        )
-        outcome = race(arena, settings, follower.round)
+        outcome = race(arena, options.settings(objective, scoring), follower.round)
     return Recommendation(
         part,
         seen,
         len(dataset.pairs),
         objective,
         outcome,
-        standing(bench, chosen, seen.overlapping, outcome, options.device),
+        standing(benches.racing, chosen, seen.overlapping, outcome, options.device),
         len(chosen),
         int(outcome.known.any(axis=1).sum()),
         store.folder,
@@ -239,7 +236,8 @@ def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:
 
 
 def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[Combination]:
-    gray = all(image.source.is_gray() for image in context.dataset.images)
+    # One that some pairs rule out cannot be compared on all of them.
+    gray = any(image.source.is_gray() for image in context.dataset.images)
     descriptors = context.methods.descriptors
     chosen = [
         each
@@ -251,11 +249,46 @@ def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[
     return chosen
 
 
-def _journal_key(
-    bench: Bench, chosen: Sequence[Combination], seen: Seen, options: RaceOptions
-) -> str:
-    """What the decisions depend on besides measurements; not the budget, which may be raised."""
+@dataclass(frozen=True)
+class _Benches:
+    """Where it is seen which images overlap, and where is raced: one and the same, mostly."""
+
+    looking: Bench
+    racing: Bench
+
+
+def _benches(
+    context: Context,
+    chosen: Sequence[Combination],
+    store: Store,
+    preset: Preset,
+    hashing: Callable[[int, int], None],
+) -> _Benches:
+    """Whether images overlap is always tested against chance, whatever the preset says."""
+    if context.protocol.chance is not None:
+        asked = list(dict.fromkeys([*chosen, *probes()]))
+        bench = Bench(context, asked, store, preset, hashing)
+        return _Benches(bench, bench)
+    tested = replace(preset, chance_test=True)
+    looking = make_context(
+        context.dataset,
+        tested,
+        seed=context.protocol.seed,
+        timing=context.protocol.timing,
+        limit=context.protocol.limit,
+    )
+    # What is opened last is what the folder is about.
+    first = Bench(looking, probes(), store, tested, hashing)
+    return _Benches(first, Bench(context, chosen, store, preset, hashing))
+
+
+def _key(benches: _Benches, chosen: Sequence[Combination], options: RaceOptions) -> str:
+    """What the decisions depend on besides measurements; not the budget, which may be raised.
+
+    The keys of rows tell of images, parameters and protocol.
+    """
     device = asdict(options.device) if options.device else None
-    rows = [bench.row_key((pair, each)) for pair in seen.overlapping for each in probes()]
+    both = dict.fromkeys((benches.looking, benches.racing))
+    rows = [[row.pair, row.row_key] for bench in both for row in bench.plan.rows]
     names = [str(each) for each in chosen]
     return content_hash([rows, names, options.objective, options.sure, options.seed, device])

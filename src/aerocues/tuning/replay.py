@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.scoring.criteria import Criterion
-from aerocues.tuning.race import Cell
+from aerocues.tuning.arena import Cell
 from aerocues.tuning.scales import Array
 
 
@@ -62,7 +62,7 @@ class ReplayArena:
             whole += sum(float(part[groups.index(name)].sum()) for name in dict.fromkeys(groups))
         return whole
 
-    def measure(self, cells: Sequence[Cell]) -> dict[Cell, Array]:
+    def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> dict[Cell, Array]:
         for alternative, pair in cells:
             self.spent += float(self._parts[-1][alternative, pair])
             for groups, part in zip(self._shared, self._parts, strict=False):

@@ -85,3 +85,16 @@ def _membership(blocks: NDArray[np.int64]) -> Array:
         return np.eye(len(blocks))
     member = (blocks[None] == names[:, None]).astype(np.float64)
     return np.asarray(member / member.sum(axis=1, keepdims=True))
+
+
+def chances(drawn: Array) -> Array:
+    """(A,) share of the drawn tables, (draws, A) of scores, in which an alternative is the best."""
+    best = np.argmax(drawn, axis=1)
+    return np.asarray(np.bincount(best, minlength=drawn.shape[1]) / len(drawn))
+
+
+def interest_of(drawn: Array, few: int) -> Array:
+    """(A,) share of the drawn tables in which it is the best, and among the few best."""
+    top = np.argsort(-drawn, axis=1, kind="stable")[:, :few]
+    among = np.bincount(top.ravel(), minlength=drawn.shape[1]) / len(drawn)
+    return np.asarray(chances(drawn) + among)

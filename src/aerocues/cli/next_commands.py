@@ -1,0 +1,82 @@
+"""What to type after a recommendation, with the options that it was asked for with."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from aerocues.tuning.recommend import Recommendation
+
+# As many as `aerocues reconstruct` takes.
+KEYPOINTS = 8000
+FEW = 3
+
+
+@dataclass(frozen=True)
+class AsMeasured:
+    """How images were opened and measured, as the options of the command line tell.
+
+    Parameters
+    ----------
+    images : str
+    pairs, subset : str or None
+    equalize : str
+    max_width : int
+        0 where the images are as they were.
+    preset : str
+    max_keypoints : int
+        0 for all.
+    seed : int
+    """
+
+    images: str
+    pairs: str | None
+    subset: str | None
+    equalize: str
+    max_width: int
+    preset: str
+    max_keypoints: int
+    seed: int
+
+    def words(self, max_keypoints: int) -> list[str]:
+        """Images and options that differ from the defaults of `run` and `reconstruct`.
+
+        Parameters
+        ----------
+        max_keypoints : int
+            The default of the command.
+        """
+        options = (
+            ("--pairs", self.pairs, None),
+            ("--subset", self.subset, None),
+            ("--equalize", self.equalize, "none"),
+            ("--max-width", self.max_width, 0),
+            ("--preset", self.preset, "default"),
+            ("--max-keypoints", self.max_keypoints, max_keypoints),
+            ("--seed", self.seed, 0),
+        )
+        words = [self.images]
+        for name, value, default in options:
+            words += [name, f"{value}"] if value != default else []
+        return words
+
+
+def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
+    """Commands that go on from a recommendation; a model only where images may have depth."""
+    few = ",".join(found.ranked["combination"].head(FEW))
+    commands = [
+        ["run", *measured.words(0), "-o", "results", "--combinations", few],
+        ["report", str(found.folder)],
+    ]
+    if found.dataset.geometry == "epipolar":
+        words = ["-o", "models", *_one_scene(found), "--combinations", found.best]
+        commands.insert(0, ["reconstruct", *measured.words(KEYPOINTS), *words])
+    return [shlex.join(["aerocues", *command]) for command in commands]
+
+
+def _one_scene(found: Recommendation) -> list[str]:
+    """A model is of one scene: the first, where there are several."""
+    scenes = list(dict.fromkeys(pair.sequence for pair in found.dataset.pairs))
+    return ["--sequences", scenes[0]] if len(scenes) > 1 else []

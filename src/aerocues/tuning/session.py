@@ -1,0 +1,109 @@
+"""The time that a race has, and what is measured in it, step by step."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from aerocues.errors import SelectionError
+from aerocues.evaluation.engine import Activity, Engine
+from aerocues.tuning.bench import Bench, Measurement
+from aerocues.tuning.journal import Journal, Step
+
+# Less than this much more seldom helps where a budget was too small.
+MORE = 3.0
+BUDGETS = (10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
+
+
+class Session:
+    """Measures within a budget of wall time.
+
+    What its journal tells of an earlier, interrupted race is gone through again without measuring,
+    so that the same decisions are taken.
+
+    Parameters
+    ----------
+    journal : Journal
+    began : float, optional
+        When it began, by `clock`; now by default.
+    watch : callable, optional
+        Told what the workers are doing.
+    clock : callable, optional
+        Gives seconds.
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        *,
+        began: float | None = None,
+        watch: Callable[[Sequence[Activity]], None] = lambda _: None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.budget = journal.budget
+        self.spent = 0.0
+        """Seconds so far, with those that are kept for the end."""
+        self._journal, self._watch, self._clock = journal, watch, clock
+        self._began = (clock() if began is None else began) - journal.spent
+
+    def measure(
+        self,
+        bench: Bench,
+        engine: Engine,
+        asked: Sequence[Measurement],
+        *,
+        until: float = float("inf"),
+        keep: float = 0.0,
+    ) -> frozenset[str]:
+        """Measure what is not there yet, and give back the keys of rows not obtained in time.
+
+        Parameters
+        ----------
+        bench : Bench
+        engine : Engine
+        asked : sequence of Measurement
+        until : float
+            Seconds of the budget after which what is unfinished is given up; all by default.
+        keep : float
+            Seconds of the budget that are kept for what follows the last step.
+        """
+        keys = [bench.row_key(each) for each in asked]
+        there = [key for key, each in zip(keys, asked, strict=True) if bench.row(each) is not None]
+        step = self._journal.replay(keys, there)
+        if step is None:
+            step = self._work(bench, engine, asked, min(until, self.budget - keep), keep)
+        self.spent = step.spent + step.kept
+        return frozenset(step.missing)
+
+    def _work(
+        self,
+        bench: Bench,
+        engine: Engine,
+        asked: Sequence[Measurement],
+        until: float,
+        keep: float,
+    ) -> Step:
+        finished = False
+        try:
+            bench.measure(asked, engine, deadline=self._began + until, watch=self._watch)
+            finished = True
+        finally:
+            spent = self._clock() - self._began
+            if not finished:
+                self._journal.interrupt(spent)
+        keys = [bench.row_key(each) for each in asked]
+        missing = [key for key, each in zip(keys, asked, strict=True) if bench.row(each) is None]
+        return self._journal.add(keys, spent, keep, missing)
+
+    def too_small(self, why: str) -> SelectionError:
+        """The error that says so, and which budget is likely to do."""
+        wanted = MORE * max(self.budget, self.spent)
+        enough = next((each for each in BUDGETS if each >= wanted), round(wanted))
+        return SelectionError(
+            f"a budget of {self.budget:g} s is too small: {why}; give --budget {_typed(enough)}"
+        )
+
+
+def _typed(seconds: int) -> str:
+    """As ``--budget`` takes it."""
+    return f"{-(-seconds // 60)}min" if seconds >= 60 else f"{seconds}s"

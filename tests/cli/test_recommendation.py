@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from aerocues.cli.console import likelihood
+from aerocues.cli.recommendation import answer
+from aerocues.datasets.catalog import open_dataset
+from aerocues.scoring.objectives import objective_named
+from aerocues.tuning.race import RaceOutcome, Round
+from aerocues.tuning.recommend import Recommendation
+from aerocues.tuning.representative import Seen
+
+COLUMNS = (
+    "precision", "precision_beyond_chance", "inliers", "excess_inliers", "detect_seconds",
+    "describe_seconds", "match_seconds", "verify_seconds", "total_seconds",
+)  # fmt: skip
+
+
+def found(photos: Path, chances: Sequence[float], unseen: tuple[int, ...] = ()) -> Recommendation:
+    """A recommendation out of so many combinations that succeeded, on three pairs."""
+    names = [f"{letter}-X-HAM-BF" for letter in "ABC"[: len(chances)]]
+    table: dict[str, Sequence[object]] = {"combination": names, "probability": chances}
+    table |= {"score": np.linspace(0.9, 0.2, len(names)).tolist()}
+    table |= {name: [3] * len(names) for name in ("pairs", "succeeded")}
+    table |= {name: [0.5] * len(names) for name in COLUMNS}
+    scores = np.linspace(1, 0, len(names))
+    ended = RaceOutcome(
+        scores,
+        np.array(chances),
+        np.ones((len(names), 3), np.bool_),
+        "measured",
+        [Round(61.0, 9, 1, names[0], chances[0])],
+    )
+    return Recommendation(
+        open_dataset(str(photos)),
+        Seen(tuple(range(3 - len(unseen))), (), unseen),
+        3,
+        objective_named("balanced"),
+        ended,
+        pl.DataFrame(table),
+        7,
+        len(names),
+        photos,
+        "a computer",
+    )
+
+
+def test_the_only_one_that_succeeded_is_compared_with_nothing(photos: Path) -> None:
+    words = " ".join(answer(found(photos, [1.0])).split())
+    assert "a pair; no other combination succeeded inlier ratio beyond chance 0.500 3 of" in words
+    several = " ".join(answer(found(photos, [0.7, 0.3])).split())
+    assert "the median of the 2 combinations that succeeded is 0" in several
+
+
+def test_a_probability_is_of_these_pairs_and_never_certain(photos: Path) -> None:
+    words = " ".join(answer(found(photos, [1.0, 0.0])).split())
+    assert (
+        "With a probability of >99% it is the best of 7 for quality and speed in balance on these "
+        "pairs: 6 measurements of 2 combinations on 3 pairs in 1 min 01 s (all that may win are "
+        "measured on all pairs)."
+    ) in words
+
+
+def test_pairs_that_there_was_no_time_for_are_told(photos: Path) -> None:
+    words = " ".join(answer(found(photos, [0.6, 0.4], unseen=(2,))).split())
+    assert "2 pairs, spread evenly, stand for all 3; a larger --budget looks at more" in words
+    assert "give more images" not in words
+
+
+@pytest.mark.parametrize(
+    ("probability", "words"),
+    [(0.0, "<1%"), (0.004, "<1%"), (0.01, "1%"), (0.61, "61%"), (0.996, ">99%"), (1.0, ">99%")],
+)
+def test_what_is_drawn_is_never_certain(probability: float, words: str) -> None:
+    assert likelihood(probability) == words
