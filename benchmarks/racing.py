@@ -1,6 +1,6 @@
 """How well a race finds the best of a full evaluation, and what it costs.
 
-    python benchmarks/racing.py [SEEDS] [RESULTS...]
+    python benchmarks/racing.py [RESULTS...] [--seeds 20] [--sure 1]
 
 Races on the published measurements, which stand beside the project, or on results folders that
 hold every combination on every pair. Prints a row a data set: the share of the CPU time that was
@@ -11,8 +11,8 @@ sampling of as many pairs as the same time buys.
 
 from __future__ import annotations
 
+import argparse
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +37,6 @@ NAMES = (
 BITS = ("akaze", "orb", "brisk", "freak", "brief", "lucid", "latch", "beblid", "teblid", "boost")
 DATASETS = ("synthetic", "oxford", "airsim", "drone")
 SHARE = 0.05
-SEEDS = 20
 Values = NDArray[np.float64]
 
 
@@ -94,7 +93,7 @@ def measured(folder: str) -> tuple[list[str], Values, Values, NDArray[np.int64],
     return alternatives, table.values, seconds, table.blocks, list(table.criteria)
 
 
-def judge(source: str, seeds: int) -> str:
+def judge(source: str, seeds: int, sure: float) -> str:
     by_name = {criterion.name: criterion for criterion in CRITERIA}
     if source in DATASETS:
         alternatives, values, seconds, blocks = published(source)
@@ -117,7 +116,7 @@ def judge(source: str, seeds: int) -> str:
         # Costs are known before only roughly: within a third.
         predicted = seconds.mean(axis=1) * np.exp(rng.normal(0, 0.3, len(alternatives)))
         arena = ReplayArena(alternatives, components, criteria, values, blocks, seconds, predicted)
-        settings = RaceSettings(SHARE * arena.total, seed, score=ScoreSettings())
+        settings = RaceSettings(SHARE * arena.total, seed, sure=sure, score=ScoreSettings())
         outcome = race(arena, settings)
         shares.append(arena.spent / arena.total)
         regrets.append(full[best[0]] - full[outcome.order[0]])
@@ -138,13 +137,15 @@ def judge(source: str, seeds: int) -> str:
 
 
 def main() -> None:
-    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else SEEDS
-    print(
-        f"{seeds} seeds                  race                                 uniform, whole pairs"
-    )
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("results", nargs="*", default=DATASETS, help="folders, or published sets")
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--sure", type=float, default=1.0, help="1: until the budget is spent")
+    arguments = parser.parse_args()
+    print("                            race                                 uniform, whole pairs")
     print("dataset      pairs    CPU   regret  worst of 5 chance  best    regret  worst  of 5")
-    for source in sys.argv[2:] or DATASETS:
-        print(judge(source, seeds), flush=True)
+    for source in arguments.results:
+        print(judge(source, arguments.seeds, arguments.sure), flush=True)
 
 
 if __name__ == "__main__":
