@@ -98,11 +98,13 @@ function scoreFigures(entry, a) {
   const score = entry.score;
   const total = entry.medians?.total?.[a];
   const precision = firstColumn(entry, ["precision_beyond_chance", "precision"]);
+  const truth = firstColumn(entry, ["gt_precision@3"]);
   return [
     ["CUES", `${fixed(score.score[a])} (${fixed(score.score_low?.[a])} to ${fixed(score.score_high?.[a])})`],
     ["Rank", rankText(score, a)],
     ["Succeeds on", `${percent(score.success_rate[a])} of pairs`],
-    precision ? [sentenceCase(labelOf(precision)), shown(meansOf(entry, precision)[a])] : null,
+    ...[precision, truth].map(column =>
+      column && [sentenceCase(labelOf(column)), shown(meansOf(entry, column)[a])]),
     isKnown(total) ? ["Time, an image and a pair", duration(total)] : null,
   ];
 }
