@@ -97,5 +97,5 @@ lock: setup ## pin the newest allowed versions in requirements.lock and requirem
 	$(LOCK) --group light --constraint requirements.lock --output-file requirements-light.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -130,6 +130,14 @@ def test_the_continuous_check_uses_targets_that_exist(repository: Path) -> None:
     assert used <= targets
 
 
+def test_what_the_demo_leaves_is_removed(repository: Path) -> None:
+    asked = ["make", "--dry-run", "clean"]
+    removed = subprocess.run(asked, cwd=repository, capture_output=True, text=True, check=True)
+    left = re.findall(r"^/(demo-[a-z.-]+)", (repository / ".gitignore").read_text(), re.MULTILINE)
+    assert left
+    assert {name.rstrip("/") for name in left} <= set(removed.stdout.split())
+
+
 def test_source_files_stay_readable(tracked_texts: dict[str, str]) -> None:
     sources = {name: text for name, text in tracked_texts.items() if re.match(r"src/.*\.py$", name)}
     too_long = {

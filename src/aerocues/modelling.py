@@ -64,11 +64,11 @@ def reconstruct(
         If the scene, the selection or a folder does not allow it. A reconstruction that fails is
         a row with its reason, and no error.
     """
+    scene = open_as_measured(dataset, results) if isinstance(dataset, str) else dataset
     if combinations is None and results is None:
         raise ReconstructionError(
             "no combinations: name some with --combinations, or results with --from"
         )
-    scene = open_as_measured(dataset, results) if isinstance(dataset, str) else dataset
     store = open_results(results, scene) if results is not None else None
     if combinations is None:
         assert results is not None
@@ -98,7 +98,8 @@ def open_as_measured(
     Parameters
     ----------
     spec, pairs, max_width, equalize, sequences, subset
-        As `aerocues.open_dataset` takes them; images are matched with their neighbours by GPS, or
+        As `aerocues.open_dataset` takes them, so that a `max_width` of 0 is for images as they are
+        whatever the results were measured on; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
     results : path, optional
     """

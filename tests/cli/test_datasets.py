@@ -31,9 +31,9 @@ def test_errors_are_one_line_and_exit_with_2(
     arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert exit_code(["datasets", "fetch", *arguments, "--to", str(tmp_path)]) == 2
-    message = capsys.readouterr().err.strip()
+    message = capsys.readouterr().err
     assert message.startswith("error: ")
-    assert "\n" not in message
+    assert message.count("\n") == 1
 
 
 def test_fetch_tells_how_to_go_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -78,7 +78,12 @@ def test_why(call: Call, combination: str, answer: str) -> None:
     [
         ("ORB-BEBLIT-HAM-BF", "there is no descriptor BEBLIT; did you mean BEBLID or TEBLID?"),
         ("ORB-ORB-COSINE-BF", "there is no norm COSINE; known are L2, HAM"),
-        ("ORB-ORB", "is no combination; write DETECTOR-DESCRIPTOR-NORM-MATCHER"),
+        ("ORBORB", "is no combination; write DETECTOR-DESCRIPTOR-NORM-MATCHER"),
+        (
+            "sift-sift",
+            "is the beginning of SIFT-SIFT-L2-BF, SIFT-SIFT-L2-FLANN; name one",
+        ),
+        ("SIFT", "more; name one, or see all with aerocues methods list --all 'SIFT-*'"),
     ],
 )
 def test_why_with_unknown_names(call: Call, combination: str, told: str) -> None:

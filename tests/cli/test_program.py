@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
@@ -86,3 +87,13 @@ def test_help_loads_nothing_heavy() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     heavy = {"cv2", "numpy", "polars", "pyarrow", "psutil", "PIL", "rich.live", "numba"}
     assert set(done.stderr.split()) & heavy == set()
+
+
+def test_help_is_in_plain_words(call: Call) -> None:
+    from aerocues.simulation.scenes import SCENES
+
+    listed = call("--help").out.split("Commands:")[1]
+    assert "..." not in listed
+    assert [kind.name for kind in SCENES if kind.name not in call("simulate", "--help").out] == []
+    for command in ("run", "reconstruct", "simulate", "airsim collect", "datasets fetch"):
+        assert not re.search(r"--\S+ <(str|int|float)\b", call(*command.split(), "--help").out)

@@ -98,6 +98,46 @@ def test_mistakes_are_told_in_one_line(
     assert len(answer.err.splitlines()) == 1
 
 
+@pytest.mark.parametrize("length", ["-3", "0", "nan", "inf"])
+def test_what_is_no_focal_length_is_told_before_anything_is_done(
+    flight: Path, tmp_path: Path, call: Call, length: str
+) -> None:
+    words = ("--combinations", NAMES, "--focal-length", length)
+    answer = call("reconstruct", flight, "-o", tmp_path / "models", *words)
+    assert answer.code == 2
+    told = f"error: --focal-length {length} is no focal length; give pixels above 0"
+    assert answer.err.startswith(told)
+    assert answer.err.count("\n") == 1
+    assert not (tmp_path / "models").exists()
+
+
+def test_the_path_is_told_before_missing_combinations(tmp_path: Path, call: Call) -> None:
+    answer = call("reconstruct", tmp_path / "nosuch", "-o", tmp_path / "models")
+    assert answer.code == 2
+    assert answer.err.startswith(f"error: there is no folder {tmp_path / 'nosuch'}")
+
+
+def test_models_that_all_fail(tmp_path: Path, call: Call) -> None:
+    from PIL import Image
+
+    blank, results = tmp_path / "blank", tmp_path / "results"
+    blank.mkdir()
+    for name in ("a", "b", "c"):
+        Image.new("RGB", (160, 120), "gray").save(blank / f"{name}.png")
+    chosen = ("--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
+    words = ("reconstruct", blank, "-o", tmp_path / "models", *chosen, "--focal-length", 200)
+    answer = call(*words)
+    assert answer.code == 1
+    assert answer.err.splitlines()[-1] == "1 of 1  ORB-ORB-HAM-BF  no_features"
+    assert answer.out.count("ORB-ORB-HAM-BF: ") == 1
+    assert f"next     aerocues recommend {blank} --objective reconstruction" in answer.out
+    assert call("run", blank, "-o", results, *chosen).code == 0
+    answer = call(*words, "--from", results)
+    assert answer.code == 1
+    assert f"next     aerocues report {results}" in answer.out
+    assert "--reconstruction" not in answer.out
+
+
 def test_one_image_and_other_scenes_are_refused(
     flight: Path, finished: Path, tmp_path: Path, call: Call
 ) -> None:

@@ -20,8 +20,9 @@ MADE = {
 def test_a_model_in_one_line() -> None:
     made = {**METHODS, **MADE, "status": "incomplete", "message": "the model holds ..."}
     assert told(made) == "incomplete: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m"
+    # The reason stands below the table at the end.
     assert told({"status": "no_features", "message": "2 of 3 images have no keypoints"}) == (
-        "no_features: 2 of 3 images have no keypoints"
+        "no_features"
     )
     assert told({"status": "no_model", "message": None}) == "no_model"
 

@@ -12,27 +12,44 @@ from aerocues.evaluation.planned_rows import METHODS
 from aerocues.evaluation.store import Store
 from aerocues.results import Results
 from tests.cli.conftest import Call
+from tests.report.made_up import folder_of, measured
 
 
-def test_relations_to_models_are_told(finished: Path, tmp_path: Path, call: Call) -> None:
-    folder = tmp_path / "results"
-    shutil.copytree(finished, folder)
-    assert "3D models" not in call("validate", folder).out
-    measured = Results(folder).table().select("dataset", *METHODS).unique().sort(METHODS)
-    models = measured.with_columns(
+def models_of(results: Results) -> pl.DataFrame:
+    """Made-up models of the combinations that were measured."""
+    known = results.table().select("dataset", *METHODS).unique().sort(METHODS)
+    return known.with_columns(
         pl.lit("ok").alias("status"),
-        pl.int_range(len(measured)).mul(100).add(40).alias("points_3d"),
-        pl.int_range(len(measured)).truediv(9).add(0.3).alias("reprojection_error"),
-        pl.int_range(len(measured)).add(3.0).alias("reconstruction_seconds"),
+        pl.int_range(len(known)).mul(100).add(40).alias("points_3d"),
+        pl.int_range(len(known)).truediv(9).add(0.3).alias("reprojection_error"),
+        pl.int_range(len(known)).add(3.0).alias("reconstruction_seconds"),
         pl.lit("one").alias("settings_key"),
     )
-    Store.open(folder).add_reconstructions(models)
+
+
+def test_relations_to_models_are_told(tmp_path: Path, call: Call) -> None:
+    results = folder_of(measured(), tmp_path)
+    folder = results.folder
+    assert "3D models" not in call("validate", folder).out
+    Store.open(folder).add_reconstructions(models_of(results))
     answer = call("validate", folder)
     assert answer.code == 0
     assert "3D models: Spearman's correlation of figures of pairs with them, over" in answer.out
     assert "points" in answer.out.split("3D models")[1]
     facts = json.loads(call("validate", folder, "--json").out)["reconstruction"]
     assert {"feature", "outcome", "pearson", "spearman"} <= set(facts[0])
+
+
+def test_few_models_are_too_few_to_tell(finished: Path, tmp_path: Path, call: Call) -> None:
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    Store.open(folder).add_reconstructions(models_of(Results(folder)))
+    told = " ".join(call("validate", folder).out.split("3D models")[1].split())
+    assert told == (
+        "4 combinations were both measured and reconstructed, too few to tell what figures of "
+        "pairs say of models; make 5 or more with 'aerocues reconstruct'"
+    )
+    assert "too few" in json.loads(call("validate", folder, "--json").out)["reconstruction"]
 
 
 def test_models_that_all_failed_are_left_out_of_the_score(

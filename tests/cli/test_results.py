@@ -19,13 +19,23 @@ from aerocues.evaluation.schema import COLUMNS
 from tests.cli.conftest import Call
 
 
-def test_without_an_option_there_is_a_summary_with_all_columns(call: Call, finished: Path) -> None:
+def test_without_an_option_there_is_a_summary(call: Call, finished: Path) -> None:
     answer = call("results", finished)
     assert answer.code == 0
     assert "4 combinations on 3 pairs" in answer.out
     assert "preset default, OpenCV" in answer.out
-    words = answer.out.replace(",", " ").split()
+    assert "--columns lists the columns" in answer.out
+    assert "repeatability_beyond_chance" not in answer.out
+
+
+def test_columns_are_listed_with_what_they_mean(call: Call, finished: Path) -> None:
+    answer = call("results", finished, "--columns")
+    assert answer.code == 0
+    words = answer.out.split()
     assert [column.name for column in COLUMNS if column.name not in words] == []
+    assert COLUMNS[0].definition in answer.out
+    assert max(map(len, answer.out.splitlines())) <= 100
+    assert call("results", finished, "--columns", "--json").code == 2
 
 
 def test_a_query_is_answered_as_a_table(call: Call, finished: Path) -> None:
@@ -47,6 +57,39 @@ def test_a_wrong_query_is_told_in_one_line(call: Call, finished: Path, query: st
     assert answer.code == 2
     assert answer.err.startswith("error: ")
     assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("query", "told"),
+    [
+        ("DROP TABLE results", "a query begins with SELECT or WITH"),
+        ("-- SELECT\nTRUNCATE results", "a query begins with SELECT or WITH"),
+        ("WITH r AS (SELECT 1) DELETE FROM results", "the query failed"),
+        ("SELECT inlier FROM results", "there is no column inlier; did you mean inliers"),
+        ("SELECT r.inlier FROM results AS r", "there is no column inlier; did you mean inliers"),
+        ("SELECT foo FROM results", "there is no column foo; 'aerocues results RESULTS --columns'"),
+        ("SELECT inliers + detector FROM results", "arithmetic on dtypes"),
+    ],
+)
+def test_a_query_that_does_not_read_is_told_shortly(
+    call: Call, finished: Path, query: str, told: str
+) -> None:
+    answer = call("results", finished, "--sql", query)
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err.startswith(f"error: {told}") or f": {told}" in answer.err
+    assert len(answer.err) < 320
+    assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "with r as (select * from results) select count(*) as n from r",
+        "-- how many\n(SELECT count(*) AS n FROM results)",
+    ],
+)
+def test_a_query_may_begin_in_other_ways(call: Call, finished: Path, query: str) -> None:
+    assert call("results", finished, "--sql", query).out.split() == ["n", "12"]
 
 
 def test_csv_holds_every_row_and_column(call: Call, finished: Path, tmp_path: Path) -> None:

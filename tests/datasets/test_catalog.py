@@ -31,7 +31,8 @@ def test_geometry_and_number_of_pairs_agree_with_the_catalog() -> None:
 @pytest.mark.parametrize(
     ("spec", "said"),
     [
-        ("oxfrd:somewhere", "did you mean oxford"),
+        ("oxfrd:somewhere", r"^there is no kind of dataset oxfrd \(did you mean oxford"),
+        ("nosuch", "^there is no folder nosuch, nor a kind of dataset"),
         ("hpatch", "did you mean hpatches"),
         ("/no/such/place", r"synthetic\[:IMAGE\], .*flight:DIR"),
         ("oxford", "oxford needs a folder; write oxford:DIR"),
@@ -59,6 +60,13 @@ def test_options_that_make_no_sense(image_folder: Path) -> None:
         open_dataset(str(image_folder), max_width=3)
     with pytest.raises(DatasetError, match="histogram"):
         open_dataset(str(image_folder), equalize="loud")
+
+
+def test_a_width_of_0_is_that_of_the_images() -> None:
+    whole, usual = (open_dataset("synthetic", max_width=width) for width in (0, None))
+    assert dict(whole.settings)["max_width"] == "full"
+    assert whole.source == usual.source
+    assert whole.images[0].source == usual.images[0].source
 
 
 def test_a_folder_called_like_a_kind(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from aerocues.errors import EngineError
 from aerocues.evaluation.child_process import ChildProcess
 
 
@@ -16,3 +17,9 @@ def test_products_of_matrices_stay_on_one_core(monkeypatch: pytest.MonkeyPatch) 
         assert child.receive() == 2
     finally:
         child.stop()
+
+
+def test_of_a_child_that_cannot_start_the_last_line_is_told() -> None:
+    told = r"could not start: \w+Error\b[^/]*; check --memory-limit and"
+    with pytest.raises(EngineError, match=told):
+        ChildProcess("tests.evaluation.threads_child", None, memory_limit_mb=1)

@@ -134,6 +134,8 @@ def test_a_folder_that_cannot_be_made_is_told_before_anything_is_measured(
     views: Dataset, tmp_path: Path
 ) -> None:
     (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="it is a file; give --features a folder"):
+        measure(views, tmp_path / "r", tmp_path / "file")
     with pytest.raises(StoreError, match="choose another folder with --features"):
         measure(views, tmp_path / "r", tmp_path / "file" / "features")
     assert not (tmp_path / "r").exists()

@@ -58,7 +58,7 @@ def test_parameters_of_a_descriptor_may_depend_on_the_detector(methods: Methods)
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("nonsense", "cannot read the preset"),
+        ("nonsense", r"cannot read the preset .*: it is not written as JSON \(line 1, column 1\)"),
         ("[1]", "is no preset: it must hold an object"),
         ('{"detector": {}}', "detector is unknown; a preset has name, title"),
         ('{"detectors": {"ORB": 5}}', "detectors must hold methods, each with parameters"),

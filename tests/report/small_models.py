@@ -63,6 +63,7 @@ def small_models(methods: tuple[tuple[str, ...], ...], harmful: str) -> dict[str
             "pearson": matrix,
             "spearman": matrix,
             "numbers": [[count, count - 2], [count, count - 2]],
+            "fewest": 5,
         },
     }
 

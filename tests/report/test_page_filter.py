@@ -19,6 +19,7 @@ NAMES = names_of()
     [
         ("", NAMES),
         ("orb", [name for name in NAMES if "ORB" in name.split("-")]),
+        ("orb -flann", [n for n in NAMES if "ORB" in n.split("-") and "FLANN" not in n]),
         ("and orb -flann", [n for n in NAMES if "ORB" in n.split("-") and "FLANN" not in n]),
         ("ORB Ham BF", [n for n in NAMES if "ORB" in n and n.endswith("HAM-BF")]),
         ("or sift daisy", [n for n in NAMES if {"SIFT", "DAISY"} & set(n.split("-"))]),

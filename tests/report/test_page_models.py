@@ -137,7 +137,7 @@ def test_relations_follow_the_measure(open_report: Open) -> None:
     note = opened.page.locator("#figure-outcome .note")
     assert "over 6 combinations" in note.inner_text()
     opened.page.fill("#filter", "and sift")
-    opened.page.locator("#figure-outcome .note", has_text="over 3 combinations").wait_for()
+    opened.page.locator("#figure-outcome .note", has_text="3 combinations: too few").wait_for()
 
 
 def test_clouds_are_light_on_paper(open_report: Open) -> None:

@@ -7,6 +7,7 @@ import io
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.report.conftest import Opened, written
@@ -45,6 +46,22 @@ def test_nothing_is_wider_than_the_window(open_report: Open, width: int) -> None
     for name in FIGURES:
         opened.figure(name)
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_table_that_goes_on_has_a_shadow_at_its_edge(open_report: Open, scheme: str) -> None:
+    opened = open_report(viewport={"width": 500, "height": 900}, color_scheme=scheme)
+    table = opened.page.locator("#ranking").locator("xpath=ancestor::*[@class='scroll']")
+    before = _right_edge(table.screenshot())
+    table.evaluate("each => { each.scrollLeft = each.scrollWidth; }")
+    assert abs(before - _right_edge(table.screenshot())) > 15
+
+
+def _right_edge(picture: bytes) -> float:
+    """How bright the last columns of a picture are."""
+    from PIL import Image
+
+    return float(np.median(np.asarray(Image.open(io.BytesIO(picture)).convert("L"))[:, -2:]))
 
 
 def test_the_answer_comes_first(open_report: Open) -> None:

@@ -14,9 +14,9 @@ from aerocues.errors import ScoreError
 from aerocues.scoring.outcomes import OUTCOMES, relate_outcomes
 from tests.scoring.measurements import METHODS, Stored, models, row, rows
 
-NAMES = tuple(f"D{number}-E-L2-BF" for number in range(6))
+NAMES = tuple(f"D{number}-E-L2-BF" for number in range(8))
 # By combination: inliers of its two pairs.
-INLIERS = ((90, 70), (60, 64), (50, 41), (30, 44), (22, 20), (13, 15))
+INLIERS = ((90, 70), (60, 64), (50, 41), (30, 44), (22, 20), (13, 15), (12, 11), (9, 8))
 MEASURED = rows(
     *(
         row(name, pair, inliers=inliers)
@@ -45,7 +45,7 @@ def reconstructed(*figures: dict[str, Any]) -> pl.DataFrame:
     )
 
 
-POINTS = (900, 950, 700, 400, 410, 100)
+POINTS = (900, 950, 700, 400, 410, 100, 90, 110)
 MODELS = reconstructed(*({"points_3d": points, "registered_images": 18} for points in POINTS))
 
 
@@ -55,19 +55,19 @@ def test_correlations_are_those_of_scipy() -> None:
     at = (found.features.index("inliers"), found.outcomes.index("points_3d"))
     assert found.pearson[at] == pytest.approx(pearsonr(means, POINTS).statistic)
     assert found.spearman[at] == pytest.approx(spearmanr(means, POINTS).statistic)
-    assert found.numbers[at] == 6
+    assert found.numbers[at] == 8
     np.testing.assert_allclose(found.feature_values[:, at[0]], means)
     np.testing.assert_allclose(found.outcome_values[:, at[1]], POINTS)
 
 
 def test_by_hand() -> None:
-    measured = rows(*(row(name, 0, inliers=10 * n) for n, name in enumerate(NAMES[:4], start=1)))
-    counts = [{"points_3d": points} for points in (1, 2, 4, 3)]
+    measured = rows(*(row(name, 0, inliers=10 * n) for n, name in enumerate(NAMES[:5], start=1)))
+    counts = [{"points_3d": points} for points in (1, 2, 4, 3, 5)]
     found = relate_outcomes(Stored(measured, reconstructed(*counts)))
     at = (found.features.index("inliers"), found.outcomes.index("points_3d"))
-    # Of ranks, 1 - 6 (0 + 0 + 1 + 1) / (4 (16 - 1)); here the values are their ranks.
-    assert found.spearman[at] == pytest.approx(0.8)
-    assert found.pearson[at] == pytest.approx(0.8)
+    # Of ranks, 1 - 6 (0 + 0 + 1 + 1 + 0) / (5 (25 - 1)); here the values are their ranks.
+    assert found.spearman[at] == pytest.approx(0.9)
+    assert found.pearson[at] == pytest.approx(0.9)
 
 
 def test_figures_of_a_model_are_of_successes_and_registered_images_of_all() -> None:
@@ -80,20 +80,23 @@ def test_figures_of_a_model_are_of_successes_and_registered_images_of_all() -> N
     figures[5] |= {"status": "crashed", "registered_images": None, "points_3d": None}
     found = relate_outcomes(Stored(MEASURED, reconstructed(*figures)))
     by_name = dict(zip(found.outcomes, found.outcome_values.T, strict=True))
-    np.testing.assert_array_equal(by_name["registered_images"], [18, 17, 16, 5, 0, np.nan])
-    np.testing.assert_array_equal(by_name["points_3d"], [900, 950, 700] + 3 * [np.nan])
+    np.testing.assert_array_equal(by_name["registered_images"], [18, 17, 16, 5, 0, np.nan, 12, 11])
+    np.testing.assert_array_equal(by_name["points_3d"], [900, 950, 700, *3 * [np.nan], 90, 110])
     numbers = found.numbers[found.features.index("inliers")]
     assert dict(zip(found.outcomes, numbers, strict=True)) == {
-        "registered_images": 5,
-        "points_3d": 3,
+        "registered_images": 7,
+        "points_3d": 5,
     }
+    figures[6]["status"] = "misplaced"
+    few = relate_outcomes(Stored(MEASURED, reconstructed(*figures)))
+    assert few.outcomes == ("registered_images",)
 
 
 def test_the_reference_has_no_distance_to_itself() -> None:
-    figures = [{"cloud_distance_rms": float(number), "reference": NAMES[0]} for number in range(6)]
+    figures = [{"cloud_distance_rms": float(number), "reference": NAMES[0]} for number in range(8)]
     found = relate_outcomes(Stored(MEASURED, reconstructed(*figures)))
     assert found.outcomes == ("cloud_distance_rms",)
-    np.testing.assert_array_equal(found.outcome_values[:, 0], [np.nan, 1, 2, 3, 4, 5])
+    np.testing.assert_array_equal(found.outcome_values[:, 0], [np.nan, 1, 2, 3, 4, 5, 6, 7])
 
 
 def test_failed_pairs_count_for_the_success_rate_only() -> None:
@@ -109,7 +112,7 @@ def test_failed_pairs_count_for_the_success_rate_only() -> None:
     assert "success_rate" not in found.features  # it is one half for all
     by_thesis = relate_outcomes(stored, "thesis")
     rate = by_thesis.feature_values[:, by_thesis.features.index("success_rate")]
-    np.testing.assert_array_equal(rate, [1, 1, 0.5, 0.5, 0.5, 0.5])
+    np.testing.assert_array_equal(rate, [1, 1, *6 * [0.5]])
 
 
 def test_the_table_has_a_row_for_each_pair_of_figures() -> None:
@@ -119,6 +122,20 @@ def test_the_table_has_a_row_for_each_pair_of_figures() -> None:
     assert frame.columns == ["feature", "outcome", "combinations", "pearson", "spearman"]
     assert frame["spearman"].is_between(-1, 1).all()
     assert "registered_images" not in found.outcomes  # 18 for all
+
+
+def test_what_few_models_have_is_not_correlated() -> None:
+    figures = [
+        {"points_3d": points, "rotation_error": float(n) if n < 5 else None}
+        for n, points in enumerate(POINTS)
+    ]
+    known = pl.when(pl.col("detector") != "D0").then(pl.col("inliers") / 400)
+    measured = MEASURED.with_columns(known.alias("recall"))
+    found = relate_outcomes(Stored(measured, reconstructed(*figures)))
+    at = (found.features.index("recall"), found.outcomes.index("rotation_error"))
+    assert found.numbers[at] == 4
+    assert np.isnan([found.spearman[at], found.pearson[at]]).all()
+    assert not np.isnan(found.spearman[found.features.index("inliers"), at[1]])
 
 
 def test_imported_figures_suffice() -> None:
@@ -132,6 +149,10 @@ def test_imported_figures_suffice() -> None:
     [
         (Stored(MEASURED), "0 combinations were both measured and reconstructed"),
         (Stored(MEASURED, models({NAMES[0]: (1, 2, 3), "A-B-C-D": (1, 2, 3)})), "1 combinations"),
+        (
+            Stored(MEASURED, models({name: (n, n, n) for n, name in enumerate(NAMES[:4])})),
+            "4 combinations .* too few to tell .*; make 5 or more",
+        ),
         (Stored(MEASURED, models(dict.fromkeys(NAMES, (1, 2, 3)))), "nothing varies"),
         (Stored(MEASURED.clear(), MODELS), "no measured rows"),
     ],

@@ -108,7 +108,7 @@ def test_time_that_is_up_leaves_the_default(call: Call, scenes: Path, tmp_path: 
     [
         (("SURF",), "nothing is known to try for SURF"),
         (("LATCH", "--objective", "beauty"), "no criterion 'beauty'"),
-        (("LATCH", "--grid", "missing.json"), "cannot read the grid"),
+        (("LATCH", "--grid", "missing.json"), "missing.json: there is no such file"),
         (("LATCH", "--budget", "never"), "--budget never is no time"),
         ((" , ",), "no method is named"),
         (("ORB-BRIEF-HAM-BF,ORB-LATCH-HAM-BF",), "tune one at a time"),

@@ -9,6 +9,8 @@ from typing import NoReturn
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and exit: 0 done, 2 a mistake of input, 130 or 143 interrupted.
 
+    1 is for a reconstruction of which no model succeeded.
+
     Parameters
     ----------
     arguments : sequence of str, optional

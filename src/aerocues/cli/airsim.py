@@ -34,24 +34,28 @@ def collect(
     ],
     survey: Annotated[
         str,
-        typer.Option(help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."),
+        typer.Option(
+            metavar="NAME", help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."
+        ),
     ] = "airsimnh",
     subset: Annotated[
         str | None,
         typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
     ] = None,
-    host: Annotated[str, typer.Option(help="Where the simulator runs.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Its port.")] = 41451,
+    host: Annotated[
+        str, typer.Option(metavar="NAME", help="Where the simulator runs.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=1, max=65535, metavar="N", help="Its port.")] = 41451,
     flavour: Annotated[
         Flavour | None, typer.Option(help="airsim (1.8.1) or cosys; found out by default.")
     ] = None,
     size: Annotated[
         str, typer.Option(metavar="WxH", help="Pixels, as in the simulator's settings.json.")
     ] = "1000x665",
-    fov: Annotated[float, typer.Option(help="Horizontal field of view, degrees.")] = 90.0,
-    form: Annotated[str, typer.Option("--format", help="png or jpeg.")] = "png",
+    fov: Annotated[float, typer.Option(metavar="DEGREES", help="Horizontal field of view.")] = 90.0,
+    form: Annotated[str, typer.Option("--format", metavar="NAME", help="png or jpeg.")] = "png",
     timeout: Annotated[
-        float, typer.Option(min=0.1, help="Seconds that an answer may take.")
+        float, typer.Option(min=0.1, metavar="SECONDS", help="That an answer may take.")
     ] = 60.0,
 ) -> None:
     """Fly a survey: images, poses, depth. Goes on where an earlier run broke off."""

@@ -39,7 +39,7 @@ class Over(StrEnum):
 
 def compare(
     folders: Annotated[
-        list[Path], typer.Argument(metavar="RESULTS...", help="Results folders or packed ones.")
+        list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed ones.")
     ],
     preset: PresetOption = None,
     criteria: CriteriaOption = None,

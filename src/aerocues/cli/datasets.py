@@ -31,10 +31,11 @@ def datasets(
 
 @app.command()
 def fetch(
-    name: Annotated[str, typer.Argument(help="oxford or hpatches")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="oxford or hpatches")],
     to: Annotated[Path, typer.Option("--to", metavar="DIR", help="Folder to put it into.")],
     base_url: Annotated[
-        str | None, typer.Option(help="Folder of a mirror that has the same archives.")
+        str | None,
+        typer.Option(metavar="URL", help="Folder of a mirror that has the same archives."),
     ] = None,
 ) -> None:
     """Download a benchmark from its authors; goes on where an earlier attempt broke off."""
@@ -57,17 +58,22 @@ def fetch(
         TransferSpeedColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True)) as bars:
+    bars = Progress(*columns, console=Console(stderr=True))
+    try:
         folders = fetch_benchmark(name, to, base_url=base_url, progress=_shown_on(bars))
+    finally:
+        if bars.live.is_started:
+            bars.stop()
     typer.echo(f"{len(folders)} sequences in {to}; measure them with: aerocues run {name}:{to}")
 
 
 def _shown_on(bars: Bars) -> Progress:
-    """A bar for each file, made when the file begins."""
+    """A bar for each file, made when the file begins: what is wrong before is told without."""
     tasks: dict[str, TaskID] = {}
 
     def show(file: str, done: int, total: int | None) -> None:
         if file not in tasks:
+            bars.start()
             tasks[file] = bars.add_task(file, total=total)
         bars.update(tasks[file], completed=done, total=total)
 

@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 
 
 def import_table(
-    file: Annotated[Path, typer.Argument(help="Measurements: .csv or .parquet, a row a pair.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Measurements: .csv or .parquet, a row a pair.")
+    ],
     output: Annotated[
         Path,
         typer.Option(
@@ -31,7 +33,7 @@ def import_table(
         str | None, typer.Option(metavar="NAME", help="This platform only.")
     ] = None,
 ) -> None:
-    """Make results folders of measurements that were made elsewhere."""
+    """Make results folders of measurements made elsewhere."""
     import aerocues
     from aerocues.cli.interruption import interruptible
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Row = DetectorRow | DescriptorRow | MatcherRow
 
-app = typer.Typer(help="List detectors, descriptors and matchers; choose and explain combinations.")
+app = typer.Typer(help="List the methods; choose and explain combinations.")
 
 
 @app.callback(invoke_without_command=True)
@@ -46,7 +46,7 @@ def methods(
 @app.command()
 def why(
     combinations: Annotated[
-        list[str], typer.Argument(metavar="COMBINATION...", help="Such as SIFT-ORB-HAM-BF.")
+        list[str], typer.Argument(metavar="COMBINATION", help="Such as SIFT-ORB-HAM-BF.")
     ],
 ) -> None:
     """Tell whether a combination runs, and why not if it does not."""
@@ -61,7 +61,7 @@ def why(
 @app.command("list")
 def list_combinations(
     globs: Annotated[
-        str | None, typer.Argument(metavar="[GLOBS]", help="Such as 'ORB-*-HAM-BF,!*-BOOST-*'.")
+        str | None, typer.Argument(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,!*-BOOST-*'.")
     ] = None,
     detectors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
     descriptors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from aerocues.reconstruction.models import Models
 
 METHODS = ("detector", "descriptor", "norm", "matcher")
-FEWEST_TO_RELATE = 5
 INDENT = "  "
 
 

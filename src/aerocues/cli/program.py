@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import Annotated, Any, cast
@@ -37,6 +38,14 @@ UsageError = cast(
     next(kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "ClickException"),
 )
 
+# What the validation behind typer says of numbers.
+IN_PLAIN_WORDS = (
+    (r"Input should be greater than or equal to (\S+)", r"give \1 or more"),
+    (r"Input should be less than or equal to (\S+)", r"give \1 or less"),
+    (r"Input should be a valid integer.*", "give a whole number"),
+    (r"Input should be a valid number.*", "give a number"),
+)
+
 app = typer.Typer(
     help="Choose local features (detector, descriptor, matcher) for 3D models from drone images.",
     add_completion=False,
@@ -52,7 +61,7 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
-app.command("tune")(tune.tune)
+app.command("tune", short_help="Search parameters; keep those that pay on other scenes.")(tune.tune)
 app.command("simulate")(simulate.simulate)
 app.add_typer(airsim.app, name="airsim")
 app.add_typer(methods.app, name="methods")
@@ -115,6 +124,8 @@ def _told(error: Any) -> str:
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "aerocues"
     message = error.format_message().replace("Value error, ", "").rstrip(".")
+    for theirs, ours in IN_PLAIN_WORDS:
+        message = re.sub(theirs, ours, message)
     return f"{message}; see '{command} --help'"
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.run import LEAST_MEMORY
+
 if TYPE_CHECKING:
     from aerocues.cli.reconstruction_progress import Reporter
     from aerocues.datasets.dataset import Dataset
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from aerocues.reconstruction.options import ReconstructionOptions
 
 MEGABYTES = 1024
+NOTHING_SUCCEEDED = 1
 
 
 class Intrinsics(StrEnum):
@@ -34,7 +37,9 @@ class Mapper(StrEnum):
 
 
 def reconstruct(
-    dataset: Annotated[str, typer.Argument(help="A folder of images, flight:DIR or uav:DIR.")],
+    dataset: Annotated[
+        str, typer.Argument(metavar="DATASET", help="A folder of images, flight:DIR or uav:DIR.")
+    ],
     output: Annotated[
         Path,
         typer.Option("-o", "--output", metavar="MODELS", help="Folder: made or continued."),
@@ -56,7 +61,8 @@ def reconstruct(
     pairs: Annotated[
         str | None,
         typer.Option(
-            help="gps[:K|:50m], exhaustive, consecutive[:K] or a file; gps where images have it."
+            metavar="HOW",
+            help="gps[:K|:50m], exhaustive, consecutive[:K] or a file; gps where images have it.",
         ),
     ] = None,
     subset: Annotated[
@@ -70,7 +76,8 @@ def reconstruct(
         int, typer.Option(min=0, metavar="N", help="The strongest of an image; 0: all.")
     ] = 8000,
     max_width: Annotated[
-        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+        int | None,
+        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
     ] = None,
     equalize: Annotated[
         str | None, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
@@ -107,25 +114,22 @@ def reconstruct(
         float, typer.Option(min=0.001, metavar="SECONDS", help="CPU time of one stage.")
     ] = 1800.0,
     memory_limit: Annotated[
-        float | None, typer.Option(min=0.1, metavar="GB", help="Memory of a process.")
+        float | None, typer.Option(min=LEAST_MEMORY, metavar="GB", help="Memory of a process.")
     ] = None,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Try again what failed on this machine.")
     ] = False,
 ) -> None:
-    """Reconstruct a scene in 3D with COLMAP, once with each of some combinations.
+    """Make a COLMAP model of a scene with each combination chosen.
 
     All of them get the same pairs, cameras and settings. Each model is kept as soon as it is
-    there: stop at any moment and run the same command again to go on.
+    there: stop at any moment and run the same command again to go on. Ends with exit code 1 if
+    no model in the folder is a success.
     """
     from aerocues.cli.interruption import interruptible
     from aerocues.errors import ReconstructionError
     from aerocues.modelling import open_as_measured, preset_of_results
 
-    if combinations is None and results is None:
-        raise ReconstructionError(
-            "no combinations: name some with --combinations, or results with --from"
-        )
     if combinations is not None and top is not None:
         raise ReconstructionError("--top chooses out of --from; leave it or --combinations out")
     with interruptible():
@@ -156,7 +160,9 @@ def reconstruct(
             retry_failed=retry_failed,
         )
         models = _reconstruct(scene, output, combinations, results, top, options)
-        _print(models, results)
+        succeeded = _print(models, dataset, results)
+    if not succeeded:
+        raise typer.Exit(NOTHING_SUCCEEDED)
 
 
 def _options(
@@ -201,21 +207,32 @@ def _reconstruct(
         raise typer.Exit(interruption.exit_code) from None
 
 
-def _print(models: Models, results: Path | None) -> None:
+def _print(models: Models, dataset: str, results: Path | None) -> bool:
+    """Print models and what to do next; whether any of them is a success."""
     from aerocues.cli.console import standard_output
     from aerocues.cli.models_table import print_models
 
     print_models(models)
-    folder = shlex.quote(str(models.folder))
-    lines = [f"\nmodels   {models.folder}", f"table    {models.folder / 'reconstructions.csv'}"]
-    if results is not None:
-        named = shlex.quote(str(results))
-        lines += [
-            f"next     aerocues score {named} --reconstruction",
-            f"         aerocues report {named}",
-        ]
-    else:
-        lines.append(f"next     colmap gui --import_path {folder}/COMBINATION/sparse/0")
+    succeeded = "ok" in models.table()["status"]
     console = standard_output()
-    for line in lines:
+    for line in (
+        f"\nmodels   {models.folder}",
+        f"table    {models.folder / 'reconstructions.csv'}",
+        *_next(models, dataset, results, succeeded=succeeded),
+    ):
         console.print(line, soft_wrap=True, markup=False)
+    return succeeded
+
+
+def _next(models: Models, dataset: str, results: Path | None, *, succeeded: bool) -> list[str]:
+    """What to do next; nothing that needs a success where there is none."""
+    if results is None and succeeded:
+        folder = shlex.quote(str(models.folder))
+        return [f"next     colmap gui --import_path {folder}/COMBINATION/sparse/0"]
+    if results is None:
+        named = shlex.quote(dataset)
+        return [f"next     aerocues recommend {named} --objective reconstruction"]
+    named = shlex.quote(str(results))
+    commands = [f"aerocues score {named} --reconstruction"] if succeeded else []
+    commands.append(f"aerocues report {named}")
+    return [f"{'next' if not i else '':9s}{command}" for i, command in enumerate(commands)]

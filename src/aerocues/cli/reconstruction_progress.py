@@ -74,7 +74,10 @@ class Reporter(ReconstructionObserver):
 
 
 def told(row: Row) -> str:
-    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or the reason of a failure."""
+    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or the status of a failure alone.
+
+    The reasons, which may be long, stand below the table at the end.
+    """
     parts = []
     if row.get("registered_images"):
         parts.append(f"{row['registered_images']} of {row['images']} images")
@@ -83,8 +86,6 @@ def told(row: Row) -> str:
             parts.append(f"{row['reprojection_error']:.2f} px")
         if row.get("position_rmse") is not None:
             parts.append(f"{row['position_rmse']:.1f} m")
-    elif row.get("message"):
-        parts.append(str(row["message"]))
     return f"{row['status']}: {', '.join(parts)}" if parts else str(row["status"])
 
 

@@ -37,10 +37,15 @@ def found_relations(results: Results, preset: str | None, dataset: str | None) -
         return str(error)
 
 
-def print_relations(found: Relations) -> None:
+def print_relations(found: Relations | str) -> None:
     """Print Spearman's correlations of figures of pairs with outcomes of reconstructions."""
     console = standard_output()
-    numbers = sorted({int(number) for number in found.numbers.ravel() if number})
+    if isinstance(found, str):
+        print_title(console, "\n3D models")
+        console.print(found, markup=False)
+        return
+    shown = found.spearman == found.spearman
+    numbers = sorted({int(number) for number in found.numbers[shown]})
     over = f"{numbers[0]}" if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}"
     title = f"\n3D models: Spearman's correlation of figures of pairs with them, over {over}"
     print_title(console, f"{title} combinations")

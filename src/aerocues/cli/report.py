@@ -36,7 +36,7 @@ class Format(StrEnum):
 
 def report(
     folders: Annotated[
-        list[Path], typer.Argument(metavar="RESULTS...", help="Results folders or packed ones.")
+        list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed ones.")
     ],
     output: Annotated[
         Path | None,
@@ -76,9 +76,9 @@ def report(
     ] = 1000,
     seed: SeedOption = 0,
 ) -> None:
-    """Show everything in one interactive page that needs no network.
+    """Show everything in one interactive page.
 
-    Several results are set side by side: data sets, and machines.
+    It needs no network. Several results are set side by side: data sets, and machines.
     """
     import aerocues
     from aerocues.cli.interruption import interruptible

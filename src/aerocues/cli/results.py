@@ -39,6 +39,9 @@ def results(
         str | None, typer.Option(metavar="FILE", help="Write a LaTeX table, rounded.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    columns: Annotated[
+        bool, typer.Option("--columns", help="List the columns and what they mean.")
+    ] = False,
     pack: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Pack all that the folder holds into one zip file."),
@@ -55,11 +58,16 @@ def results(
     asked = {form: target for form, target in targets.items() if target is not None}
     if len(asked) > 1:
         raise typer.BadParameter(f"choose one of {', '.join(f'--{form}' for form in targets)}")
+    if columns and (asked or sql is not None or pack):
+        raise typer.BadParameter("--columns only lists them; leave the other options out")
     if pack and (asked or sql is not None):
         raise typer.BadParameter("--pack takes all that there is; leave the other options out")
     found = aerocues.Results(folder)
     if pack:
         _pack(found, pack)
+        return
+    if columns:
+        _print_columns()
         return
     if not asked and sql is None:
         _print_summary(found, top)
@@ -88,12 +96,24 @@ def _print_table(table: pl.DataFrame) -> None:
         typer.echo(line)
 
 
+def _print_columns() -> None:
+    from rich.text import Text
+
+    from aerocues.cli.console import plain_table, print_table, standard_output
+    from aerocues.evaluation.schema import COLUMNS
+
+    table = plain_table("column", "unit", "definition")
+    for column in COLUMNS:
+        table.add_row(Text(column.name), Text(column.unit), Text(column.definition))
+    table.columns[0].no_wrap = True
+    print_table(standard_output(), table)
+
+
 def _print_summary(found: Results, top: int) -> None:
     from rich.text import Text
 
     from aerocues.cli.console import count, standard_output
     from aerocues.cli.medians_table import print_medians
-    from aerocues.evaluation.schema import COLUMNS
 
     table, settings = found.table(), found.settings
     console = standard_output()
@@ -107,9 +127,11 @@ def _print_summary(found: Results, top: int) -> None:
         console.print(Text(machine))
     if models := len(found.reconstructions()):
         console.print(Text(f"{count(models, 'reconstruction')}, in the table reconstructions"))
-    console.print(Text("\ncolumns", style="bold"))
-    console.print(Text(", ".join(column.name for column in COLUMNS)))
-    console.print("\nget them out with --csv FILE, --parquet FILE, --json or --sql QUERY")
+    console.print(
+        "\nget them out with --csv FILE, --parquet FILE, --json or --sql QUERY; "
+        "--columns lists the columns",
+        soft_wrap=True,
+    )
 
 
 def _origin(settings: dict[str, Any]) -> str:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from aerocues.methods.strongest import KeypointLimit
 
 MEGABYTES = 1024
+# A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
+LEAST_MEMORY = 0.5
 # As `aerocues.evaluation.passes.TIMED_PAIRS`, which takes longer to import than help may take.
 TIMED_PAIRS = 5
 
@@ -39,7 +41,10 @@ class Timing(StrEnum):
 
 def run(
     dataset: Annotated[
-        str, typer.Argument(help="A folder, or one of the kinds that 'aerocues datasets' lists.")
+        str,
+        typer.Argument(
+            metavar="DATASET", help="A folder, or one of the kinds that 'aerocues datasets' lists."
+        ),
     ],
     output: Annotated[
         Path,
@@ -68,7 +73,8 @@ def run(
     pairs: Annotated[
         str | None,
         typer.Option(
-            help="consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file of pairs."
+            metavar="HOW",
+            help="consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file of pairs.",
         ),
     ] = None,
     subset: Annotated[
@@ -82,7 +88,8 @@ def run(
         str | None, typer.Option(metavar="GLOBS", help="These sequences only, such as 'graf,b*'.")
     ] = None,
     max_width: Annotated[
-        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+        int | None,
+        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
     ] = None,
     equalize: Annotated[
         str, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
@@ -106,8 +113,13 @@ def run(
         ),
     ] = Timing.EXCLUSIVE,
     timing_pairs: Annotated[
-        int, typer.Option(min=0, metavar="K", help="Pairs that are timed alone; 0: all.")
-    ] = TIMED_PAIRS,
+        int | None,
+        typer.Option(
+            min=0,
+            metavar="K",
+            help=f"Pairs that are timed alone; 0: all; {TIMED_PAIRS} by default.",
+        ),
+    ] = None,
     seed: Annotated[
         int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
     ] = 0,
@@ -117,7 +129,7 @@ def run(
     ] = None,
     memory_limit: Annotated[
         float | None,
-        typer.Option(min=0.1, metavar="GB", help="Memory of a worker; its share of 80 %."),
+        typer.Option(min=LEAST_MEMORY, metavar="GB", help="Memory of a worker; its share of 80 %."),
     ] = None,
     features: Annotated[
         Path | None,
@@ -162,7 +174,7 @@ def run(
             "preset": preset,
             "seed": seed,
             "timing": timing.value,
-            "timed_pairs": timing_pairs,
+            "timed_pairs": _timed_pairs(timing, timing_pairs),
             "limit": _limit(max_keypoints, spread),
             "retry_failed": retry_failed,
         }
@@ -176,6 +188,17 @@ def run(
         with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
             results = _measure({**arguments, "engine": chosen})
         _print_results(results, images.name, top)
+
+
+def _timed_pairs(timing: Timing, asked: int | None) -> int:
+    from aerocues.errors import SelectionError
+
+    if asked is not None and timing is not Timing.EXCLUSIVE:
+        raise SelectionError(
+            f"--timing-pairs is for pairs that are timed alone, and --timing {timing.value} times "
+            "none so; leave one of the two out"
+        )
+    return TIMED_PAIRS if asked is None else asked
 
 
 def _limit(max_keypoints: int, spread: bool) -> KeypointLimit:

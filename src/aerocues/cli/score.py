@@ -76,7 +76,7 @@ def score(
         str | None, typer.Option(metavar="FILE", help="Write the best N as Markdown.")
     ] = None,
 ) -> None:
-    """Rank the combinations by CUES and tell how sure the ranking is."""
+    """Rank combinations by CUES and tell how sure the ranking is."""
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.ranking_table import facts, print_scores

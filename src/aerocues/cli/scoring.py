@@ -35,7 +35,8 @@ CriteriaOption = Annotated[
     typer.Option(
         "--criteria",
         metavar="NAMES",
-        help="Such as precision,inliers; by default those of the preset.",
+        help="Such as precision,inliers (docs/scoring.md lists all); by default those of the "
+        "preset.",
     ),
 ]
 ReconstructionOption = Annotated[
@@ -59,7 +60,9 @@ AlphaOption = Annotated[
 WeightsOption = Annotated[
     str | None,
     typer.Option(
-        "--weights", metavar="NAMES", help="Such as entropy,critic; by default those of the preset."
+        "--weights",
+        metavar="NAMES",
+        help="Such as entropy,critic (docs/scoring.md lists all); by default those of the preset.",
     ),
 ]
 AggregationOption = Annotated[

@@ -20,39 +20,58 @@ def simulate(
     ],
     survey: Annotated[
         str,
-        typer.Option(help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."),
+        typer.Option(
+            metavar="NAME", help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."
+        ),
     ] = "mini",
     subset: Annotated[
         str | None,
         typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
     ] = None,
-    scene: Annotated[str, typer.Option(help="What is flown over.")] = "suburb",
-    seed: Annotated[int, typer.Option(min=0, help="Of the scene and the noise.")] = 0,
+    scene: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="What is flown over: suburb, fields or industrial."),
+    ] = "suburb",
+    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of the scene and the noise.")] = 0,
     size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1000x665",
-    fov: Annotated[float, typer.Option(help="Horizontal field of view, degrees.")] = 90.0,
+    fov: Annotated[float, typer.Option(metavar="DEGREES", help="Horizontal field of view.")] = 90.0,
     sun: Annotated[
         str, typer.Option(metavar="AZ,EL", help="Azimuth from north, elevation; degrees.")
     ] = "140,48",
-    haze: Annotated[float, typer.Option(min=0.0, help="0 for clear air.")] = 0.2,
+    haze: Annotated[float, typer.Option(min=0.0, metavar="AMOUNT", help="0 for clear air.")] = 0.2,
     glints: Annotated[
-        float, typer.Option(min=0.0, help="Leaves and roofs look different from each side.")
+        float,
+        typer.Option(
+            min=0.0, metavar="AMOUNT", help="Leaves and roofs look different from each side."
+        ),
     ] = 1.0,
-    noise: Annotated[float, typer.Option(min=0.0, help="Of the sensor; 0 for none.")] = 1.0,
-    blur: Annotated[float, typer.Option(min=0.0, help="Of the lens, pixels.")] = 0.55,
-    motion: Annotated[float, typer.Option(min=0.0, help="Motion blur, pixels.")] = 0.0,
+    noise: Annotated[
+        float, typer.Option(min=0.0, metavar="AMOUNT", help="Of the sensor; 0 for none.")
+    ] = 1.0,
+    blur: Annotated[
+        float, typer.Option(min=0.0, metavar="PIXELS", help="Of the lens, pixels.")
+    ] = 0.55,
+    motion: Annotated[
+        float, typer.Option(min=0.0, metavar="PIXELS", help="Motion blur, pixels.")
+    ] = 0.0,
     exposure_jitter: Annotated[
-        float, typer.Option(min=0.0, help="From image to image, stops.")
+        float, typer.Option(min=0.0, metavar="STOPS", help="From image to image, stops.")
     ] = 0.0,
     interval: Annotated[
-        float, typer.Option(min=0.0, help="Seconds between images: cars drive on.")
+        float,
+        typer.Option(min=0.0, metavar="SECONDS", help="Seconds between images: cars drive on."),
     ] = 0.0,
     wind: Annotated[
         float,
         typer.Option(
-            "--wind", "--wind-trees", min=0.0, help="Moves crowns by so many metres (--interval)."
+            "--wind",
+            "--wind-trees",
+            min=0.0,
+            metavar="METRES",
+            help="Moves crowns by so many metres (--interval).",
         ),
     ] = 0.0,
-    form: Annotated[str, typer.Option("--format", help="png or jpeg.")] = "png",
+    form: Annotated[str, typer.Option("--format", metavar="NAME", help="png or jpeg.")] = "png",
 ) -> None:
     """Simulate a survey flight: images, poses, depth. Goes on where an earlier run broke off."""
     from aerocues.simulation.flight import Settings

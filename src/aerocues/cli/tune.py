@@ -59,7 +59,8 @@ def tune(
         typer.Option(min=3, metavar="N", help="Pairs to choose by, and as many to judge by."),
     ] = 16,
     max_width: Annotated[
-        int | None, typer.Option(metavar="PIXELS", help="Shrink wider images to this width.")
+        int | None,
+        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
     ] = None,
     results: Annotated[
         Path | None,

@@ -82,7 +82,7 @@ def validate(
         print_json({**_facts(scores, found), "reconstruction": relation_facts(relations)})
         return
     print_validation(scores, found, measured, top)
-    if not isinstance(relations, str):
+    if len(results.reconstructions()):
         print_relations(relations)
 
 

@@ -39,7 +39,7 @@ def open_dataset(
         ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m``,
         ``overlap:0.3-0.9`` or the path of a pairs file; for the kinds without pairs of their own.
     max_width : int, optional
-        Wider images are shrunk to this width in pixels; homographies are scaled along.
+        Wider images are shrunk to this width in pixels, and homographies scaled along; 0: none.
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
     limit : int, optional
@@ -71,6 +71,7 @@ def open_dataset(
         raise DatasetError(
             f"{kind.name} has pairs of its own; use --sequences in place of --subset"
         )
+    max_width = max_width or None
     dataset = kind.load(target, Options(pairs, max_width, equalize, subset))
     names = sequences if sequences is None or isinstance(sequences, str) else ",".join(sequences)
     source = Source(
@@ -118,8 +119,9 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
         raise DatasetError(f"{spec} is a file; give its folder, or synthetic:{spec}")
     close = get_close_matches(word.lower(), _KINDS, n=1)
     meant = f" (did you mean {close[0]}?)" if close else ""
+    missing = f"kind of dataset {word}" if colon else f"folder {spec}, nor a kind of dataset"
     forms = ", ".join(row.form for row in CATALOG)
-    raise DatasetError(f"{spec} is neither a kind of dataset{meant} nor a folder; use {forms}")
+    raise DatasetError(f"there is no {missing}{meant}; use {forms}")
 
 
 def _restricted(

@@ -21,7 +21,9 @@ _CLAHE_TILES = (8, 8)
 def check_settings(max_width: int | None, equalize: str) -> None:
     """Raise DatasetError unless the size and the equalisation make sense."""
     if max_width is not None and max_width < 16:
-        raise DatasetError(f"--max-width {max_width} is too small; give 16 pixels or more")
+        raise DatasetError(
+            f"--max-width {max_width} is too small; give 16 pixels or more, or 0 for all"
+        )
     if equalize not in EQUALIZATIONS:
         raise DatasetError(f"unknown equalisation '{equalize}'; use {', '.join(EQUALIZATIONS)}")
 

@@ -19,7 +19,7 @@ from aerocues.datasets.flight_angles import ENU_FROM_NED, camera_from_ned
 from aerocues.datasets.folder import chosen_pairs, folder_images, scene_of
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import Consecutive
-from aerocues.errors import DatasetError, ImageError
+from aerocues.errors import DatasetError, ImageError, why_unreadable
 
 _TRUTH = "truth"
 
@@ -87,10 +87,12 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         camera = PinholeCamera(**settings["camera"])
         with (truth / "poses.csv").open(encoding="utf-8", newline="") as file:
             poses = {row["image"]: row for row in csv.DictReader(file)}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError) as error:
         raise DatasetError(
-            f"{truth} cannot be read ({error}); simulate the flight again"
+            f"{truth} cannot be read ({why_unreadable(error)}); simulate the flight again"
         ) from error
+    except (KeyError, TypeError) as error:
+        raise DatasetError(f"{truth} lacks parts; simulate the flight again") from error
     prefix = folder.resolve().relative_to(root.resolve())
     fitted = scaled_camera(camera, options.max_width)
     images = [

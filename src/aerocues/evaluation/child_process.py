@@ -106,11 +106,12 @@ class ChildProcess:
         except BaseException:  # an interruption: nobody else knows this process yet
             self.stop()
             raise
-        words = self._last_words()
+        lines = self._written().splitlines()
         self.stop()
+        # Of a traceback the last line says what happened; where, is of no use to who reads it.
         raise EngineError(
-            f"a worker process could not start: {words or 'no message'}; check --memory-limit and "
-            "that this Python can import aerocues"
+            f"a worker process could not start: {lines[-1] if lines else 'no message'}; check "
+            "--memory-limit and that this Python can import aerocues"
         )
 
     def send(self, work: object) -> None:
@@ -179,9 +180,11 @@ class ChildProcess:
 
     def _last_words(self) -> str:
         """The end of what the process wrote to its standard error, in one line."""
+        return " ".join(self._written().split())[-LAST_WORDS:]
+
+    def _written(self) -> str:
         self._errors.seek(0)
-        text = self._errors.read().decode(errors="replace")
-        return " ".join(text.split())[-LAST_WORDS:]
+        return self._errors.read().decode(errors="replace").strip()
 
     def stop(self, patience: float = 0.0) -> None:
         """End the process: at once, or where it has nothing left to do, by itself.

@@ -40,6 +40,10 @@ def checked_folder(folder: Path) -> Path:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise StoreError(
+            f"cannot keep features in {folder}: it is a file; give --features a folder"
+        ) from error
     except OSError as error:
         raise StoreError(
             f"cannot keep features in {folder}: {error.strerror}; choose another folder with "

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from aerocues.errors import StoreError
 from aerocues.evaluation.clock import DISTURBED
 from aerocues.evaluation.planned_rows import TIMED_ALONE
 from aerocues.evaluation.statuses import RETRIED
@@ -123,18 +122,11 @@ class Results:
         Raises
         ------
         StoreError
-            If the query cannot be understood.
+            If the query does something else than to read, or cannot be understood.
         """
-        import polars as pl
+        from aerocues.evaluation.queries import answer
 
-        try:
-            tables = {"results": self.table(), "reconstructions": self.reconstructions()}
-            return pl.SQLContext(tables).execute(query, eager=True)
-        except pl.exceptions.PolarsError as error:
-            raise StoreError(
-                f"the query failed: {' '.join(str(error).split())}; the table is called results, "
-                'and names such as "gt_precision@3" need double quotes'
-            ) from error
+        return answer(query, {"results": self.table(), "reconstructions": self.reconstructions()})
 
     def status(self) -> RunStatus:
         """How many rows are done, left and failed, by reason."""

@@ -9,6 +9,9 @@ from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_meaningless, why_unavailable
 from aerocues.methods.registry import Methods
+from aerocues.methods.selection import runnable
+
+LISTED = 4
 
 
 def explain(text: str, methods: Methods) -> str:
@@ -19,6 +22,8 @@ def explain(text: str, methods: Methods) -> str:
     SelectionError
         If `text` is no combination or a name in it does not exist, with those that are close.
     """
+    if beginning := _beginning(text, methods):
+        raise SelectionError(beginning)
     combination = Combination.parse(text)
     for kind, name, known in (
         ("detector", combination.detector, methods.detectors),
@@ -40,6 +45,19 @@ def explain(text: str, methods: Methods) -> str:
     if methods.descriptors[combination.descriptor].needs_colour:
         return f"{combination} runs; with gray images it is left out, because it compares colours"
     return f"{combination} runs"
+
+
+def _beginning(text: str, methods: Methods) -> str | None:
+    """Which combinations a text may be the beginning of; None if it is none."""
+    start = f"{text.strip().upper()}-"
+    whole = [str(each) for each in runnable(methods) if str(each).startswith(start)]
+    if not whole:
+        return None
+    more = f" and {len(whole) - LISTED} more" if len(whole) > LISTED else ""
+    return (
+        f"{text} is the beginning of {', '.join(whole[:LISTED])}{more}; name one, or see all with "
+        f"aerocues methods list --all '{start}*'"
+    )
 
 
 def _close(name: str, known: Iterable[str]) -> str:

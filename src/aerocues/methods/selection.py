@@ -61,6 +61,10 @@ def _unmatched(pattern: str, methods: Methods) -> SelectionError:
             or f"{why_meaningless(first, methods)} (--all runs it all the same)"
         )
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
+    # A part of a name is no misspelt whole one: it wants its stars.
+    for whole in (f"{pattern}-*", f"*-{pattern}-*", f"*-{pattern}"):
+        if any(takes(whole, combination, methods) for combination in everything):
+            return SelectionError(f"no combination matches {pattern!r}; did you mean '{whole}'?")
     close = get_close_matches(pattern, [str(text) for text in everything], n=3, cutoff=0.6)
     hint = f"did you mean {', '.join(close)}?" if close else "see 'aerocues methods' for the names"
     return SelectionError(f"no combination matches {pattern!r}; {hint}")

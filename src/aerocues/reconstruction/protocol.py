@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from math import isfinite
 from typing import Literal
 
+from aerocues.errors import ReconstructionError
 from aerocues.evaluation.protocol import ChanceTest, Verification
 
 Intrinsics = Literal["fixed", "refine"]
@@ -65,12 +67,17 @@ class ReconstructionProtocol:
         Whether focal length and distortion are those known before, or adjusted with the model.
         Flat scenes seen from straight above do not determine them.
     focal_length : float or None
-        Pixels, in place of what EXIF tells.
+        Pixels, in place of what EXIF tells; above 0.
     mapper : {"incremental", "global"}
     chance : ChanceTest or None
         Pairs whose matches do not beat chance are not given to COLMAP. With thousands of
         keypoints, images that share nothing have more than enough matches to be verified by
         COLMAP's rules; they cost most of the time of mapping, and some pull cameras away.
+
+    Raises
+    ------
+    ReconstructionError
+        If the focal length is none: every model would fail, each after all of its work.
     """
 
     seed: int = 0
@@ -82,6 +89,14 @@ class ReconstructionProtocol:
     chance: ChanceTest | None = field(default_factory=ChanceTest)
     mapping: Mapping = Mapping()
     requirements: Requirements = Requirements()
+
+    def __post_init__(self) -> None:
+        length = self.focal_length
+        if length is not None and not (isfinite(length) and length > 0):
+            raise ReconstructionError(
+                f"--focal-length {length:g} is no focal length; give pixels above 0, or leave it "
+                "out to take what EXIF tells"
+            )
 
     def matching_identity(self) -> dict[str, object]:
         """What decides features and matches."""

@@ -9,7 +9,7 @@ from aerocues.errors import ScoreError
 from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
 from aerocues.scoring.combinations import COMBINATION, METHODS
 from aerocues.scoring.criteria import CRITERIA, Better
-from aerocues.scoring.outcomes import OUTCOMES, Relations, relations_of
+from aerocues.scoring.outcomes import FEWEST_MODELS, OUTCOMES, Relations, relations_of
 
 if TYPE_CHECKING:
     import polars as pl
@@ -109,4 +109,5 @@ def _related(found: Relations) -> dict[str, Any]:
         "pearson": found.pearson,
         "spearman": found.spearman,
         "numbers": found.numbers,
+        "fewest": FEWEST_MODELS,
     }

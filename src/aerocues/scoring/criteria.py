@@ -208,8 +208,8 @@ def criteria_named(names: Iterable[str], known: Sequence[Criterion] = CRITERIA) 
         if name not in by_name:
             near = get_close_matches(name, by_name, n=3, cutoff=0.4) or list(by_name)[:3]
             raise ScoreError(
-                f"there is no criterion {name!r}; did you mean {' or '.join(near)}? The guide's "
-                "page on scoring lists all"
+                f"there is no criterion {name!r}; did you mean {' or '.join(near)}? "
+                "docs/scoring.md lists all"
             )
         if chosen.count(name) > 1:
             raise ScoreError(f"criterion {name} is named twice; name it once")

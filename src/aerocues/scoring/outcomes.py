@@ -17,7 +17,7 @@ from aerocues.scoring.combinations import (
     SUCCESS_WITHOUT_CHANCE_TEST,
     suitable_preset,
 )
-from aerocues.scoring.correlation import FEWEST, correlation_between
+from aerocues.scoring.correlation import correlation_between
 from aerocues.scoring.criteria import Better, criteria_named
 from aerocues.scoring.long_form import values_of
 from aerocues.scoring.measured import Measured, rows_of_dataset
@@ -49,6 +49,9 @@ FEATURES = (
     "homography_auc@3",
     "pose_auc@10",
 )
+# Three models are in the same order, or in the opposite one, as any figure of pairs in one case of
+# three, and four in one of twelve: among dozens of coefficients, some are then exactly 1 by luck.
+FEWEST_MODELS = 5
 # How a reconstruction ends that holds no image. Where a program failed, nothing is known.
 WITHOUT_MODEL = ("no_features", "no_verified_pair", "no_initial_pair", "no_model")
 
@@ -105,6 +108,7 @@ class Relations:
     outcome_values : (combinations, outcomes) float64
         NaN where it is not known, or describes a model that is no success.
     pearson, spearman : (features, outcomes) float64
+        NaN where fewer than `FEWEST_MODELS` combinations have both.
     numbers : (features, outcomes) int64
         Combinations behind each of them.
     """
@@ -156,7 +160,8 @@ def relate_outcomes(
     Raises
     ------
     ScoreError
-        If fewer than 3 combinations were both measured and reconstructed, or nothing varies.
+        If fewer than `FEWEST_MODELS` combinations were both measured and reconstructed, or nothing
+        varies over as many.
     """
     import polars as pl
 
@@ -175,10 +180,11 @@ def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
     name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
     features = _features(rows.with_columns(name), chance_fails=chance_fails)
     joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
-    if len(joined) < FEWEST:
+    if len(joined) < FEWEST_MODELS:
         raise ScoreError(
-            f"{len(joined)} combinations were both measured and reconstructed, and a relation "
-            f"needs {FEWEST}; make more models with 'aerocues reconstruct'"
+            f"{len(joined)} combinations were both measured and reconstructed, too few to tell "
+            f"what figures of pairs say of models; make {FEWEST_MODELS} or more with "
+            "'aerocues reconstruct'"
         )
     return _related(rows["dataset"][0], joined, features.columns[1:])
 
@@ -232,12 +238,19 @@ def _outcome(models: pl.DataFrame, outcome: Outcome) -> pl.Expr:
 def _related(dataset: str, joined: pl.DataFrame, features: Sequence[str]) -> Relations:
     varied = [_varying(joined, names) for names in (features, [each.name for each in OUTCOMES])]
     if not all(varied):
-        raise ScoreError("nothing varies over the combinations; reconstruct with other ones, too")
+        raise _nothing_varies()
     first, second = (
         joined.select(names).to_numpy().astype(np.float64).reshape(len(joined), len(names))
         for names in varied
     )
     both = (~np.isnan(first)).T.astype(np.int64) @ (~np.isnan(second)).astype(np.int64)
+    too_few = both < FEWEST_MODELS
+    pearson, spearman = (
+        np.where(too_few, np.nan, correlation_between(first.T, second.T, method))
+        for method in ("pearson", "spearman")
+    )
+    if np.isnan(spearman).all():
+        raise _nothing_varies()
     return Relations(
         dataset,
         tuple(joined[COMBINATION]),
@@ -245,18 +258,27 @@ def _related(dataset: str, joined: pl.DataFrame, features: Sequence[str]) -> Rel
         tuple(varied[1]),
         first,
         second,
-        correlation_between(first.T, second.T, "pearson"),
-        correlation_between(first.T, second.T, "spearman"),
+        pearson,
+        spearman,
         both,
     )
 
 
+def _nothing_varies() -> ScoreError:
+    return ScoreError(
+        f"nothing varies over {FEWEST_MODELS} or more models that can be compared; reconstruct "
+        "with other combinations, too"
+    )
+
+
 def _varying(table: pl.DataFrame, names: Sequence[str]) -> list[str]:
-    """The columns with 3 values or more that are not all the same."""
+    """The columns with values for enough models that are not all the same."""
 
     def known(name: str) -> Iterator[float]:
         return (value for value in table[name].drop_nulls() if np.isfinite(value))
 
     return [
-        name for name in names if len(list(known(name))) >= FEWEST and len(set(known(name))) > 1
+        name
+        for name in names
+        if len(list(known(name))) >= FEWEST_MODELS and len(set(known(name))) > 1
     ]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from aerocues.datasets.dataset import PinholeCamera
-from aerocues.errors import SimulationError
+from aerocues.errors import SimulationError, why_unreadable
 from aerocues.simulation.camera import Pose
 from aerocues.simulation.surveys import SURVEYS, Shot, Survey, survey_called
 
@@ -119,13 +119,25 @@ def open_survey(spec: str, camera: PinholeCamera) -> Survey:
     """
     if spec.lower() in SURVEYS or not Path(spec).is_file():
         return survey_called(spec)
-    known = {field.name for field in fields(Mission)}
+    return plan(_read_mission(Path(spec)), camera, Path(spec).stem)
+
+
+def _read_mission(file: Path) -> Mission:
+    names = [field.name for field in fields(Mission)]
+    known = ", ".join(names)
     try:
-        terms = json.loads(Path(spec).read_text(encoding="utf-8"))
-        unknown = sorted(set(terms) - known)
-        mission = Mission(**terms) if not unknown else None
+        terms = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SimulationError(
+            f"cannot read the mission {file}: {why_unreadable(error)}; give a JSON file with "
+            f"{known}"
+        ) from error
+    if not isinstance(terms, dict):
+        raise SimulationError(f"{file} is no mission: it must hold an object with {known}")
+    unknown = [name for name in terms if name not in names]
+    if unknown:
+        raise SimulationError(f"{file}: {', '.join(unknown)} is unknown; use {known}")
+    try:
+        return Mission(**terms)
     except (ValueError, TypeError) as error:
-        raise SimulationError(f"{spec} is no mission ({error}); write JSON with {known}") from error
-    if mission is None:
-        raise SimulationError(f"{spec}: {', '.join(unknown)} is unknown; use {', '.join(known)}")
-    return plan(mission, camera, Path(spec).stem)
+        raise SimulationError(f"{file} is no mission ({error}); use {known}") from error

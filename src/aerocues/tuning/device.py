@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from aerocues.errors import SelectionError
+from aerocues.errors import SelectionError, why_unreadable
 from aerocues.evaluation.metrics import Row, add_metrics
 
 ANY = "*"
@@ -64,7 +64,9 @@ def read_device(path: Path) -> Device:
     try:
         content: Any = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise SelectionError(f"cannot read the factors {path}: {error}; {_NEXT_STEP}") from error
+        raise SelectionError(
+            f"cannot read the factors {path}: {why_unreadable(error)}; {_NEXT_STEP}"
+        ) from error
     stages = content.get("stages") if isinstance(content, dict) else None
     if not isinstance(stages, dict) or not all(_are_factors(stages.get(name)) for name in STAGES):
         raise SelectionError(

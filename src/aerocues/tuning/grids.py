@@ -14,7 +14,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
-from aerocues.errors import SelectionError
+from aerocues.errors import SelectionError, why_unreadable
 from aerocues.methods.parameters import Value
 
 Kind = Literal["detector", "descriptor"]
@@ -184,7 +184,10 @@ def read_grid(path: Path) -> dict[str, tuple[Value, ...]]:
     try:
         content: Any = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise SelectionError(f"cannot read the grid {path}: {error}; it is JSON") from error
+        raise SelectionError(
+            f"cannot read the grid {path}: {why_unreadable(error)}; give a JSON file such as "
+            '{"threshold": [5, 10, 20]}'
+        ) from error
     if (
         not isinstance(content, dict)
         or not content

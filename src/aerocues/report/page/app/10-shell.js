@@ -19,7 +19,7 @@ function buildMasthead() {
 
 function buildToolbar() {
   const filter = make("input", {
-    type: "search", id: "filter", placeholder: "and orb -flann", autocomplete: "off",
+    type: "search", id: "filter", placeholder: "orb -flann", autocomplete: "off",
     spellcheck: "false", "aria-describedby": "filter-help filter-count",
     oninput: () => state.set({q: filter.value.trim() ? filter.value : null}),
   });
@@ -119,7 +119,7 @@ function updateToolbar({filter, clear, themes}) {
     `${shownNow} of ${entry.combinations.length}`;
   document.getElementById("filter-help").textContent = unknown.length
     ? `No combination has a part that begins with ${listed(unknown.map(word => `“${word}”`), "or")}.`
-    : "Words: “and orb -flann” all, without; “or sift daisy” any; “not l2” none. It works on everything below.";
+    : "“orb -flann”: with ORB, without FLANN. “or sift daisy”: with SIFT or DAISY. “not l2”: without L2. Filters everything below.";
   document.getElementById("filter-help").classList.toggle("warning", unknown.length > 0);
   themes.textContent = themeName() === "dark" ? "Light" : "Dark";
   themes.setAttribute("aria-label", `Show in ${themeName() === "dark" ? "light" : "dark"} colours`);

@@ -55,7 +55,7 @@ const OUTCOME_MATRIX = {
   available: hasRelations,
   draw({entry, option, theme, narrow}) {
     const found = modelsOf(entry).relations;
-    const numbers = found.numbers.flat().filter(number => number > 0);
+    const numbers = found.numbers.flat().filter(number => number >= found.fewest);
     return {
       ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: found[option("measure")], theme, narrow,
         what: option("measure") === "spearman" ? "Spearman" : "Pearson"}),
@@ -90,7 +90,7 @@ function preferredOption(options, wanted) {
 
 function outcomePoints({entry, option, theme, narrow}) {
   const models = modelsOf(entry);
-  const {combinations, values} = models.relations;
+  const {combinations, values, fewest} = models.relations;
   const [xName, yName] = [option("x"), option("y")];
   const place = new Map(models.combinations.map((name, m) => [name, m]));
   const passes = currentFilter();
@@ -110,7 +110,8 @@ function outcomePoints({entry, option, theme, narrow}) {
     }),
     height: narrow ? 440 : 460,
     layout: scatterFrame({title: labelOf(xName), nticks: narrow ? 5 : 8}, {title: labelOf(yName)}, narrow),
-    note: `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
+    note: found.length < fewest ? `${counted(found.length, "combination")}: too few to tell a correlation.`
+      : `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
   };
 }
 
