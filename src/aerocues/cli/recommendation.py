@@ -76,11 +76,14 @@ def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
         f"{count(measured, 'measurement')} of {count(found.measured, 'combination')} on "
         f"{count(len(found.seen.overlapping), 'pair')} in {spent} ({ENDS[outcome.ended]})"
     )
-    told = f"the best of {found.combinations} for {found.objective.title} on these pairs"
+    told = f"of {found.combinations} for {found.objective.title} on these pairs"
     if chance >= PROBABLE:
-        first = f"With a probability of {likelihood(chance)} it is {told}"
+        first = f"With a probability of {likelihood(chance)} it is the best {told}"
     else:
-        first = f"It leads as {told}, though with a probability of {likelihood(chance)} only"
+        first = (
+            f"Its expected score is the highest {told}, though it is the best with a probability "
+            f"of {likelihood(chance)} only"
+        )
     names = possible_winners(found.ranked)
     others = [name for name in names if name != found.best]
     if not others:
