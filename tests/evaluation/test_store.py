@@ -271,8 +271,12 @@ def test_sql_answers_and_explains_itself(store: Store) -> None:
     store.write_rows("a", [row(1, matches=4), row(2, matches=6)])
     results = Results(store.folder)
     assert results.sql("SELECT sum(matches) AS total FROM results").to_dicts() == [{"total": 10}]
-    for query in ("SELEC", "SELECT nothing FROM results", "SELECT * FROM rows"):
-        with pytest.raises(StoreError, match="the table is called results"):
+    for query, told in (
+        ("SELEC", "begins with SELECT or WITH"),
+        ("SELECT nothing FROM results", "there is no column nothing"),
+        ("SELECT * FROM rows", "the tables are called results and reconstructions"),
+    ):
+        with pytest.raises(StoreError, match=told):
             results.sql(query)
 
 
