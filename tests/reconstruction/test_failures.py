@@ -81,6 +81,7 @@ def test_identical_images_have_no_angle_between_them(
     assert "COLMAP asks for 25 inliers and 4 degrees" in row["message"]
 
 
+@pytest.mark.slow
 def test_two_groups_that_do_not_meet_are_named(
     tmp_path: Path, quick: ReconstructionOptions
 ) -> None:
@@ -111,6 +112,7 @@ def faulty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(tmp_path / "site")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("faulty")
 def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
     landscape: Dataset, quick: ReconstructionOptions, empty: Path
@@ -129,6 +131,7 @@ def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
     assert "signal SIGSEGV) in features ORB-DYING-HAM-BF on view_0.png" in rows["DYING"]["message"]
 
 
+@pytest.mark.slow
 def test_a_stage_that_takes_too_long_is_ended(
     landscape: Dataset, quick: ReconstructionOptions, empty: Path
 ) -> None:

@@ -106,6 +106,7 @@ def test_colmap_itself_reads_the_model(models: Models) -> None:
     assert f"Points: {row_of(models, SIFT)['points_3d']}" in told.stdout + told.stderr
 
 
+@pytest.mark.slow
 def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     models: Models, landscape: Dataset, quick: ReconstructionOptions, empty: Path
 ) -> None:
@@ -138,6 +139,7 @@ def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     assert row_of(changed, SIFT)["position_rmse"] < 0.2
 
 
+@pytest.mark.slow
 def test_a_damaged_database_or_file_of_matches_does_no_harm(
     models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
 ) -> None:
@@ -208,6 +210,7 @@ def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> 
         Models(empty)
 
 
+@pytest.mark.slow
 def test_a_failure_leaves_nothing_of_an_earlier_model(
     models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
 ) -> None:
@@ -237,6 +240,7 @@ def test_files_that_are_gone_are_made_again(
     assert again.cloud(SIFT) is not None
 
 
+@pytest.mark.slow
 def test_other_truth_or_other_names_are_another_scene(
     models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
 ) -> None:
@@ -265,6 +269,7 @@ def test_other_truth_or_other_names_are_another_scene(
     assert row_of(again, SIFT)["status"] == "ok"
 
 
+@pytest.mark.slow
 def test_a_pair_in_both_orders_is_matched_once(
     landscape: Dataset, quick: ReconstructionOptions, empty: Path
 ) -> None:

@@ -84,6 +84,7 @@ def test_the_text_tells_of_models(results: aerocues.Results) -> None:
     assert "- failed: misplaced 1, incomplete 1, no verified pair 1" in text
 
 
+@pytest.mark.slow
 def test_figures_of_models_are_drawn(results: aerocues.Results, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     names = {path.name for path in write_figures(report_entries([results]), tmp_path)}

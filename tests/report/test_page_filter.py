@@ -44,6 +44,7 @@ def test_words_keep_the_combinations_that_they_name(
     assert sorted(shown) == sorted(kept)
 
 
+@pytest.mark.slow
 def test_a_word_that_nothing_has_is_named(open_report: Open) -> None:
     opened = open_report()
     opened.page.fill("#filter", "orb surf")
@@ -77,6 +78,7 @@ def test_the_filter_reaches_figures(open_report: Open) -> None:
     assert "ORB-BEBLID-HAM-BF" in str(opened.page.text_content("#figure-dots .plot"))
 
 
+@pytest.mark.slow
 def test_the_state_stands_in_the_address_and_comes_back(open_report: Open) -> None:
     opened = open_report()
     opened.page.fill("#filter", "or sift orb")
@@ -107,6 +109,7 @@ def test_a_changed_address_changes_the_page(open_report: Open) -> None:
     assert opened.rows() == ["KAZE-KAZE-L2-BF"]
 
 
+@pytest.mark.slow
 def test_nonsense_in_the_address_does_no_harm(open_report: Open) -> None:
     opened = open_report(
         "#q=%3Cimg%20src%3Dx%3E&entry=none&sort=-nothing&rows=x&columns=,,&heat.value=zzz"

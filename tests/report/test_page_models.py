@@ -129,6 +129,7 @@ def test_a_cloud_is_saved_as_a_picture(open_report: Open, tmp_path: Path) -> Non
     assert (tmp_path / "cloud.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_relations_follow_the_measure(open_report: Open) -> None:
     opened = open_report()
     opened.figure("outcomes")
@@ -140,6 +141,7 @@ def test_relations_follow_the_measure(open_report: Open) -> None:
     opened.page.locator("#figure-outcome .note", has_text="3 combinations: too few").wait_for()
 
 
+@pytest.mark.slow
 def test_clouds_are_light_on_paper(open_report: Open) -> None:
     opened = open_report(color_scheme="dark")
     opened.page.locator("#clouds").scroll_into_view_if_needed()

@@ -100,7 +100,7 @@ def test_the_preset_suits_the_measurements() -> None:
 
 def test_one_of_several_datasets_is_chosen() -> None:
     results = Stored(rows(row(ORB, 0), row(SIFT, 0), row(ORB, 0, dataset="other", inliers=20)))
-    with pytest.raises(ScoreError, match="choose one of them .--dataset.: flight, other"):
+    with pytest.raises(ScoreError, match=r"choose one of them \(--dataset\): flight, other"):
         table_of(results)
     with pytest.raises(ScoreError, match="no dataset 'third'"):
         table_of(results, dataset="third")

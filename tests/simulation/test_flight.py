@@ -95,6 +95,7 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
         open_dataset("synthetic", subset="a")
 
 
+@pytest.mark.slow
 def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
     small = replace(SETTINGS, width=24, height=16)
     part, whole = tmp_path / "part", tmp_path / "whole"

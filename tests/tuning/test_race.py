@@ -57,6 +57,7 @@ def run(seed: int = 0, share: float = 0.15, **settings: float) -> tuple[ReplayAr
     return place, race(place, chosen)
 
 
+@pytest.mark.slow
 def test_a_race_finds_the_best_for_a_part_of_the_cost() -> None:
     truth = full_scores(arena())
     regrets = []
@@ -87,6 +88,7 @@ def test_a_clear_winner_ends_the_race() -> None:
     assert outcome.rounds[-1].leader == place.alternatives[outcome.order[0]]
 
 
+@pytest.mark.slow
 def test_a_race_is_not_sure_of_what_was_hardly_measured() -> None:
     for seed in range(3):
         _, outcome = run(seed, share=5.0, sure=0.5)
@@ -96,6 +98,7 @@ def test_a_race_is_not_sure_of_what_was_hardly_measured() -> None:
         assert outcome.known[rivals].sum(axis=1).min() >= 2
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_race() -> None:
     first, second = run(3)[1], run(3)[1]
     np.testing.assert_array_equal(first.scores, second.scores)

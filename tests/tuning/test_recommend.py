@@ -56,6 +56,7 @@ def test_the_answer_says_what_how_sure_why_and_what_next(
     assert again.out == answer.out.replace(f"report   {page}\n", "")
 
 
+@pytest.mark.slow
 def test_objectives_and_devices_count(call: Call, photos: Path, tmp_path: Path) -> None:
     output = tmp_path / "race"
     for objective in ("speed", "accuracy", "reconstruction", "robust"):
@@ -108,6 +109,7 @@ def test_images_that_allow_no_answer_get_none(
     assert answer.err.count("error: ") == 1
 
 
+@pytest.mark.slow
 def test_a_preset_without_a_chance_test_guesses_no_more_than_others(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:
@@ -138,6 +140,7 @@ def test_a_budget_that_is_too_small_is_told_at_once(
                      answer.err, re.MULTILINE)  # fmt: skip
 
 
+@pytest.mark.slow
 def test_other_parameters_are_another_race(call: Call, photos: Path, tmp_path: Path) -> None:
     preset, output = tmp_path / "mine.json", tmp_path / "race"
     two = ("--combinations", "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-BF", *SHORT)
@@ -149,6 +152,7 @@ def test_other_parameters_are_another_race(call: Call, photos: Path, tmp_path: P
     assert len(json.loads((output / "race.json").read_text())) == 2
 
 
+@pytest.mark.slow
 def test_the_next_commands_have_the_options_and_suit_the_images(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:

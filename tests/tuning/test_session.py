@@ -108,6 +108,7 @@ def assert_same(first: RaceOutcome, second: RaceOutcome) -> None:
     np.testing.assert_array_equal(first.probability, second.probability)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [8, 33])
 def test_an_interrupted_race_ends_as_one_that_was_not(
     photos: Path, tmp_path: Path, memory: dict[str, Row], rows: int
@@ -126,6 +127,7 @@ def test_an_interrupted_race_ends_as_one_that_was_not(
     assert not third.measured
 
 
+@pytest.mark.slow
 def test_more_budget_goes_on_and_measures_what_time_was_lacking_for(
     photos: Path, tmp_path: Path, memory: dict[str, Row]
 ) -> None:

@@ -28,6 +28,7 @@ def tune(call: Call, methods: str, scenes: Path, preset: Path, *more: object) ->
     return call("tune", methods, spec, "-o", preset, "--max-keypoints", 400, *WORKERS, *more)
 
 
+@pytest.mark.slow
 def test_what_pays_becomes_a_preset(call: Call, scenes: Path, tmp_path: Path) -> None:
     grid = tmp_path / "grid.json"
     grid.write_text(json.dumps({"bytes": [2, 32]}))
