@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 
 class AerocuesError(Exception):
     """Base of every error that a user can act on; the command line prints it in one line."""
@@ -43,16 +41,3 @@ class ReconstructionError(AerocuesError):
 
 class SimulationError(AerocuesError):
     """A flight cannot be simulated as asked."""
-
-
-def why_unreadable(error: OSError | ValueError) -> str:
-    """Why a file of a user cannot be read as JSON, in words that follow a colon."""
-    if isinstance(error, FileNotFoundError):
-        return "there is no such file"
-    if isinstance(error, IsADirectoryError):
-        return "it is a folder"
-    if isinstance(error, OSError):
-        return error.strerror or str(error)
-    if isinstance(error, json.JSONDecodeError):
-        return f"it is not written as JSON (line {error.lineno}, column {error.colno})"
-    return "it is no text"

@@ -6,11 +6,11 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from aerocues.reconstruction.protocol import MAX_KEYPOINTS
+
 if TYPE_CHECKING:
     from aerocues.tuning.recommend import Recommendation
 
-# As many as `aerocues reconstruct` takes.
-KEYPOINTS = 8000
 FEW = 3
 
 
@@ -72,7 +72,7 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     ]
     if found.dataset.geometry == "epipolar":
         words = ["-o", "models", *_one_scene(found), "--combinations", found.best]
-        commands.insert(0, ["reconstruct", *measured.words(KEYPOINTS), *words])
+        commands.insert(0, ["reconstruct", *measured.words(MAX_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from aerocues.tuning.recommend import RaceOptions, Recommendation
 
 WIDTH = 1000
-# As `aerocues.cli.next_commands.KEYPOINTS`: as many as `aerocues reconstruct` takes.
+# As `aerocues.reconstruction.protocol.MAX_KEYPOINTS`, which takes longer to import than help may.
 KEYPOINTS = 8000
 
 
@@ -111,7 +111,7 @@ def recommend(
 
     with interruptible():
         dataset = open_dataset(
-            images, pairs=pairs, max_width=max_width or None, equalize=equalize, subset=subset
+            images, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset
         )
         options = RaceOptions(
             budget=parse_duration(budget, "--budget"),

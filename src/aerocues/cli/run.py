@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from aerocues.cli.progress import Tally
     from aerocues.evaluation.results import Results
     from aerocues.methods.strongest import KeypointLimit
+    from aerocues.scoring.measured import Measured
 
 MEGABYTES = 1024
 # A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
@@ -257,10 +258,11 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     from aerocues.cli.console import standard_output
     from aerocues.cli.status import times_of
     from aerocues.evaluation.results import timing_counts
+    from aerocues.scoring.measured import MeasuredRows
 
     table = results.table().filter(pl.col("dataset") == dataset)
     if len(table):
-        _print_ranking(results, dataset, top)
+        _print_ranking(MeasuredRows(table, results.reconstructions()), top)
     console = standard_output()
     counts = table["status"].value_counts(sort=True).iter_rows()
     by_status = ", ".join(f"{status} {number:,}" for status, number in counts) or "none"
@@ -284,7 +286,7 @@ def _next(folder: str, table: pl.DataFrame) -> tuple[str, ...]:
     return (*ranked, rows)
 
 
-def _print_ranking(results: Results, dataset: str, top: int) -> None:
+def _print_ranking(rows: Measured, top: int) -> None:
     from aerocues.cli.console import standard_output
     from aerocues.cli.ranking_table import print_best
     from aerocues.errors import ScoreError
@@ -292,7 +294,7 @@ def _print_ranking(results: Results, dataset: str, top: int) -> None:
     from aerocues.scoring.ranking import rank_alternatives
 
     try:
-        measured = table_of(results, dataset=dataset)
+        measured = table_of(rows)
         print_best(rank_alternatives(measured.table, measured.preset.settings), measured, top)
     except ScoreError as error:
         # The rows are there and of use, if only to see why none can be ranked.

@@ -19,7 +19,8 @@ from aerocues.datasets.flight_angles import ENU_FROM_NED, camera_from_ned
 from aerocues.datasets.folder import chosen_pairs, folder_images, scene_of
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import Consecutive
-from aerocues.errors import DatasetError, ImageError, why_unreadable
+from aerocues.errors import DatasetError, ImageError
+from aerocues.json_files import why_unreadable
 
 _TRUTH = "truth"
 

@@ -9,7 +9,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from aerocues.errors import SelectionError, why_unreadable
+from aerocues.errors import SelectionError
+from aerocues.json_files import read_json
 from aerocues.methods.presets import Preset, preset_named, preset_names
 
 _GROUPS = ("detectors", "descriptors", "on_detectors")
@@ -24,13 +25,7 @@ def read_preset(path: Path) -> Preset:
     SelectionError
         If the file cannot be read or is no preset.
     """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SelectionError(
-            f"cannot read the preset {path}: {why_unreadable(error)}; give a JSON file with "
-            f"{_known()}"
-        ) from error
+    content = read_json(path, "the preset", SelectionError, f"give a JSON file with {_known()}")
     if not isinstance(content, dict):
         raise SelectionError(f"{path} is no preset: it must hold an object with {_known()}")
     return preset_of({"name": path.stem, **content}, str(path))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from aerocues.errors import ScoreError
 from aerocues.scoring.comparison import Comparison, Over, compare
 from aerocues.scoring.cues import Scores, score
-from aerocues.scoring.measured import Measured, settings_from, table_of
+from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
 from aerocues.scoring.platforms import compare_times
 
 if TYPE_CHECKING:
@@ -99,20 +99,6 @@ class Machines:
         )
 
 
-@dataclass(frozen=True)
-class _Rows:
-    """Rows of one dataset and machine, with the reconstructions that belong to them."""
-
-    rows: pl.DataFrame
-    models: pl.DataFrame
-
-    def table(self) -> pl.DataFrame:
-        return self.rows
-
-    def reconstructions(self) -> pl.DataFrame:
-        return self.models
-
-
 def entries_of(
     results: Sequence[Stored],
     preset: str | None = None,
@@ -154,7 +140,10 @@ def entries_of(
     found: list[tuple[Path, Entry]] = []
     for source, (dataset, machine), rows in groups:
         measured = table_of(
-            _Rows(rows, models[source]), preset, criteria=criteria, reconstruction=reconstruction
+            MeasuredRows(rows, models[source]),
+            preset,
+            criteria=criteria,
+            reconstruction=reconstruction,
         )
         scores = score(measured.table, settings_from(measured.preset, **changes))
         known = dataset in models[source]["dataset"]

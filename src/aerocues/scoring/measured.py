@@ -41,6 +41,20 @@ class Measured(Protocol):
 
 
 @dataclass(frozen=True)
+class MeasuredRows:
+    """Rows that were read already, with the reconstructions that belong to them."""
+
+    rows: pl.DataFrame
+    models: pl.DataFrame
+
+    def table(self) -> pl.DataFrame:
+        return self.rows
+
+    def reconstructions(self) -> pl.DataFrame:
+        return self.models
+
+
+@dataclass(frozen=True)
 class MeasuredTable:
     """The measurements of one dataset, ready to be scored.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
@@ -11,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from aerocues.datasets.dataset import PinholeCamera
-from aerocues.errors import SimulationError, why_unreadable
+from aerocues.errors import SimulationError
+from aerocues.json_files import read_json
 from aerocues.simulation.camera import Pose
 from aerocues.simulation.surveys import SURVEYS, Shot, Survey, survey_called
 
@@ -125,13 +125,7 @@ def open_survey(spec: str, camera: PinholeCamera) -> Survey:
 def _read_mission(file: Path) -> Mission:
     names = [field.name for field in fields(Mission)]
     known = ", ".join(names)
-    try:
-        terms = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SimulationError(
-            f"cannot read the mission {file}: {why_unreadable(error)}; give a JSON file with "
-            f"{known}"
-        ) from error
+    terms = read_json(file, "the mission", SimulationError, f"give a JSON file with {known}")
     if not isinstance(terms, dict):
         raise SimulationError(f"{file} is no mission: it must hold an object with {known}")
     unknown = [name for name in terms if name not in names]

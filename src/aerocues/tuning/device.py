@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from aerocues.errors import SelectionError, why_unreadable
+from aerocues.errors import SelectionError
 from aerocues.evaluation.metrics import Row, add_metrics
+from aerocues.json_files import read_json
 
 ANY = "*"
 STAGES: dict[str, tuple[str, ...]] = {
@@ -61,12 +61,7 @@ def read_device(path: Path) -> Device:
     SelectionError
         If the file cannot be read or does not hold factors.
     """
-    try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SelectionError(
-            f"cannot read the factors {path}: {why_unreadable(error)}; {_NEXT_STEP}"
-        ) from error
+    content = read_json(path, "the factors", SelectionError, _NEXT_STEP)
     stages = content.get("stages") if isinstance(content, dict) else None
     if not isinstance(stages, dict) or not all(_are_factors(stages.get(name)) for name in STAGES):
         raise SelectionError(

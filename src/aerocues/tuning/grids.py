@@ -7,14 +7,14 @@ default of another method of the same kind is.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from aerocues.errors import SelectionError, why_unreadable
+from aerocues.errors import SelectionError
+from aerocues.json_files import read_json
 from aerocues.methods.parameters import Value
 
 Kind = Literal["detector", "descriptor"]
@@ -181,13 +181,8 @@ def read_grid(path: Path) -> dict[str, tuple[Value, ...]]:
     SelectionError
         If it cannot be read or holds something else.
     """
-    try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SelectionError(
-            f"cannot read the grid {path}: {why_unreadable(error)}; give a JSON file such as "
-            '{"threshold": [5, 10, 20]}'
-        ) from error
+    example = 'give a JSON file such as {"threshold": [5, 10, 20]}'
+    content = read_json(path, "the grid", SelectionError, example)
     if (
         not isinstance(content, dict)
         or not content

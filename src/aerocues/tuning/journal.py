@@ -77,9 +77,8 @@ class Journal:
                 complete = [not step.missing for step in journal.steps]
                 journal._cut(complete.index(False) if False in complete else len(complete))
         except (KeyError, TypeError, ValueError):
-            return cls(
-                path, key, budget
-            )  # none, or damaged: the measurements are there all the same
+            # There is none, or it is damaged: the measurements are there all the same.
+            return cls(path, key, budget)
         return journal
 
     @property
