@@ -8,7 +8,7 @@ from aerocues.cli.console import plain_table, print_table, standard_output
 from aerocues.cli.validation_tables import print_title
 
 if TYPE_CHECKING:
-    from aerocues.results import Results
+    from aerocues.scoring.measured import Measured
     from aerocues.scoring.outcomes import Relations
 
 HEADINGS = {
@@ -26,7 +26,7 @@ HEADINGS = {
 }
 
 
-def found_relations(results: Results, preset: str | None, dataset: str | None) -> Relations | str:
+def found_relations(results: Measured, preset: str | None, dataset: str | None) -> Relations | str:
     """The relations, or why there are none."""
     from aerocues.errors import ScoreError
     from aerocues.scoring.outcomes import relate_outcomes

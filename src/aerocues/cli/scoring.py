@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from aerocues.evaluation.results import Results
-    from aerocues.scoring.measured import MeasuredTable
+    from aerocues.scoring.measured import Measured, MeasuredTable
     from aerocues.scoring.settings import ScoreSettings
 
 
@@ -90,7 +89,7 @@ def named(names: str | None) -> tuple[str, ...] | None:
 
 
 def table_and_settings(
-    results: Results,
+    results: Measured,
     *,
     preset: str | None,
     criteria: str | None,

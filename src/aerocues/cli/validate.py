@@ -60,10 +60,12 @@ def validate(
     from aerocues.cli.scoring import table_and_settings
     from aerocues.cli.validation_tables import print_validation
     from aerocues.scoring.cues import score
+    from aerocues.scoring.measured import MeasuredRows
     from aerocues.scoring.validation import validate as examine
 
     with interruptible():
-        results = aerocues.Results(folder)
+        stored = aerocues.Results(folder)
+        results = MeasuredRows(stored.table(), stored.reconstructions())
         measured, settings = table_and_settings(
             results,
             preset=preset,
