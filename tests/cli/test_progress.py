@@ -200,6 +200,7 @@ def test_a_second_pass_is_told_apart_from_the_rows_that_are_there() -> None:
     tally.finished(done(CHEAP))
     assert tally.stored() == "100 rows are stored, 20 of 20 timed alone"
     assert tally.measured() == "measured 40 rows and timed 20 alone"
+    assert tally.there_already() == "all 100 rows are there already, 20 of them timed alone"
 
 
 def test_rows_that_count_no_longer_are_told(capsys: pytest.CaptureFixture[str]) -> None:

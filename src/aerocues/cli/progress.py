@@ -106,6 +106,13 @@ class Tally(Observer):
         timed = f"{self.rows_stored:,} of {self.rows_planned:,} timed alone"
         return f"{self._stored_before:,} rows are stored, {timed}"
 
+    def there_already(self) -> str:
+        """``all 36 rows are there already, 6 of them timed alone``."""
+        if self._stored_before is None:
+            return f"all {count(self.rows_stored, 'row')} are there already"
+        rows = count(self._stored_before, "row")
+        return f"all {rows} are there already, {self.rows_stored:,} of them timed alone"
+
     def measured(self) -> str:
         """``measured 75 rows and timed 30 alone``."""
         if self._stored_before is None:

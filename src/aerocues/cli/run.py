@@ -239,13 +239,12 @@ def _measure(arguments: dict[str, Any]) -> Results:
 
 
 def _report_end(tally: Tally) -> None:
-    from aerocues.cli.console import count
     from aerocues.cli.progress import spoken_seconds
 
     if tally.rows_measured_in_all:
         line = f"{tally.measured()} in {spoken_seconds(tally.elapsed_in_all)}"
     elif tally.rows_stored:
-        line = f"nothing to measure: all {count(tally.rows_stored, 'row')} are there already"
+        line = f"nothing to measure: {tally.there_already()}"
     else:
         line = "nothing to measure: the images rule out all combinations that were chosen"
     sys.stderr.write(f"{line}\n\n")
