@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 
 import aerocues
-from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol
-from aerocues.evaluation.verification import magsac_parameters
 from aerocues.methods.arrays import Features, Keypoints
 from aerocues.methods.exact.matching import mutual_nearest
 from aerocues.methods.parameters import create_opencv
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.selection import select
+from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol
+from aerocues.pipeline.verification import magsac_parameters
 
 
 class BareLoop:

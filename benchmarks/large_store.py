@@ -19,9 +19,9 @@ from pathlib import Path
 
 import polars as pl
 
-from aerocues.evaluation.planned_rows import IDENTITY_NAMES
-from aerocues.evaluation.results import Results
-from aerocues.evaluation.store import Store
+from aerocues.results.measured_results import Results
+from aerocues.results.plan_table import IDENTITY_NAMES
+from aerocues.results.store import Store
 
 CODE = """
 import json, resource, time

@@ -24,14 +24,14 @@ import cv2
 import numpy as np
 
 import aerocues
-from aerocues.evaluation.child_process import ONE_THREAD
-from aerocues.evaluation.clock import Clock
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.exact.matching import mutual_nearest
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.methods.parameters import Value
 from aerocues.methods.presets import Preset
 from aerocues.methods.registry import Methods, opencv_methods
+from aerocues.pipeline.clock import Clock
+from aerocues.processes.child_process import ONE_THREAD
 
 # Descriptor, norm and parameters that differ from the thesis's, of each kind.
 KINDS: dict[str, tuple[str, str, dict[str, Value]]] = {

@@ -19,7 +19,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from aerocues.evaluation.results import Results
+from aerocues.results.measured_results import Results
 from aerocues.scoring.combinations import METHODS
 from aerocues.scoring.criteria import CRITERIA, Criterion
 from aerocues.scoring.cues import score

@@ -23,8 +23,8 @@ from scipy.stats import spearmanr
 import aerocues
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.passes import passes
-from aerocues.evaluation.results import Results
-from aerocues.evaluation.store import Store
+from aerocues.results.measured_results import Results
+from aerocues.results.store import Store
 from aerocues.scoring.combinations import METHODS
 
 SIZES = (1, 2, 3, 5, 10)

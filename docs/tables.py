@@ -11,11 +11,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from aerocues.evaluation import schema
-from aerocues.evaluation.metrics import METRICS
-from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
-from aerocues.evaluation.schema import Column
-from aerocues.evaluation.statuses import STATUSES
 from aerocues.methods.compatibility import incompatibility, why_meaningless
 from aerocues.methods.descriptors import DESCRIPTORS
 from aerocues.methods.detectors import DETECTORS
@@ -23,6 +18,11 @@ from aerocues.methods.matchers import MATCHERS, NORMS
 from aerocues.methods.preset_files import tuned_record
 from aerocues.methods.presets import preset_named, preset_names
 from aerocues.methods.registry import opencv_methods
+from aerocues.results import schema
+from aerocues.results.metrics import METRICS
+from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
+from aerocues.results.schema import Column
+from aerocues.results.statuses import STATUSES
 from aerocues.scoring.criteria import CRITERIA
 from aerocues.scoring.settings import PRESETS as SCORE_PRESETS
 from aerocues.scoring.weights import WEIGHT_METHODS

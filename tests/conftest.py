@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from aerocues.datasets.dataset import Dataset
+
 # A crowded machine is no failure, and the same commit is to give the same answer wherever it is
 # checked; at the desk, new examples are tried every time.
 settings.register_profile("everywhere", deadline=None)
@@ -30,6 +32,14 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("no shared data; set AEROCUES_SHARED_DATA to the folder that holds oxford/")
     return folder.resolve()
+
+
+@pytest.fixture(scope="session")
+def views(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
+    """Four overlapping views, neighbours paired."""
+    from tests.evaluation.scenes import strip, write_dataset
+
+    return write_dataset(tmp_path_factory.mktemp("views"), strip(4))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

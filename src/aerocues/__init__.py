@@ -7,7 +7,7 @@
     results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
     print(aerocues.score(results).frame("combination"))
     aerocues.reconstruct("photos", "models", results="results", top=5)
-    results.report("report.html")
+    aerocues.write_report(results, "report.html")
 
 Everything here is loaded when it is first used, so that importing the package costs nothing.
 """
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from aerocues.datasets.dataset import Dataset
     from aerocues.errors import AerocuesError
     from aerocues.evaluation.dask_engine import DaskEngine
-    from aerocues.evaluation.run import Limits, Observer
-    from aerocues.measuring import import_results, run
+    from aerocues.evaluation.run import Limits, Observer, run
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
     from aerocues.modelling import reconstruct
@@ -30,7 +29,8 @@ if TYPE_CHECKING:
     from aerocues.reconstruction.options import ReconstructionOptions
     from aerocues.reconstruction.protocol import ReconstructionProtocol
     from aerocues.report.report import write_report
-    from aerocues.results import Results
+    from aerocues.results.importing import import_results
+    from aerocues.results.measured_results import Results
     from aerocues.scoring.measured import score
     from aerocues.scoring.outcomes import relate_outcomes
     from aerocues.scoring.ranking import Ranking
@@ -42,12 +42,12 @@ if TYPE_CHECKING:
 _MODULES = {
     "open_dataset": "datasets.catalog",
     "Dataset": "datasets.dataset",
-    "run": "measuring",
+    "run": "evaluation.run",
     "Limits": "evaluation.run",
     "Observer": "evaluation.run",
     "DaskEngine": "evaluation.dask_engine",
-    "Results": "results",
-    "import_results": "measuring",
+    "Results": "results.measured_results",
+    "import_results": "results.importing",
     "reconstruct": "modelling",
     "ReconstructionOptions": "reconstruction.options",
     "ReconstructionProtocol": "reconstruction.protocol",

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError
-from aerocues.evaluation.results import Results
 from aerocues.methods.combination import Combination
 from aerocues.methods.preset_files import recorded_preset
 from aerocues.methods.presets import Preset, preset_named, preset_names
@@ -15,6 +14,7 @@ from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
 from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
+from aerocues.results.measured_results import Results
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
 

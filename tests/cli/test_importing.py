@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from polars.testing import assert_frame_equal
 
-from aerocues.evaluation.results import Results
+from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 from tests.evaluation.tables import figures, measured, write_table
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from aerocues.evaluation.results import Results
+from aerocues.results.measured_results import Results
 
 # A shell that starts tests in the background makes them ignore SIGINT, and children inherit that.
 PROGRAM = (

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from aerocues.evaluation.results import Results
+from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 
 LIGHT_PYTHON = os.environ.get("AEROCUES_LIGHT_PYTHON")

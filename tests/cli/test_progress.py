@@ -12,8 +12,9 @@ from aerocues.cli.progress import PlainLines, Tally, spoken_seconds
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Exclusion, Plan
 from aerocues.evaluation.planned_rows import PlannedRow
-from aerocues.evaluation.unit import PairWork, StageCall, Unit
+from aerocues.evaluation.unit import PairWork, Unit
 from aerocues.methods.combination import Combination
+from aerocues.processes.call import StageCall
 
 
 @dataclass

@@ -12,7 +12,7 @@ import polars as pl
 import psutil
 import pytest
 
-from aerocues.results import Results
+from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 from tests.reconstruction.scenes import GRID, write_scene
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import polars as pl
 
-from aerocues.evaluation.planned_rows import METHODS
-from aerocues.evaluation.store import Store
-from aerocues.results import Results
+from aerocues.results.measured_results import Results
+from aerocues.results.plan_table import METHODS
+from aerocues.results.store import Store
 from tests.cli.conftest import Call
 from tests.report.made_up import folder_of, measured
 

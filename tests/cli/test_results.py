@@ -14,8 +14,8 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from aerocues.evaluation.results import Results
-from aerocues.evaluation.schema import COLUMNS
+from aerocues.results.measured_results import Results
+from aerocues.results.schema import COLUMNS
 from tests.cli.conftest import Call
 
 

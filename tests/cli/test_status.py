@@ -9,7 +9,7 @@ from pathlib import Path
 
 import polars as pl
 
-from aerocues.evaluation.results import Results
+from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 
 

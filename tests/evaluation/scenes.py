@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, Geometry, Image, Pair
 from aerocues.datasets.decoding import FileSource
-from aerocues.evaluation.schema import COLUMNS, HOW_TIMED
+from aerocues.results.schema import COLUMNS, HOW_TIMED
 from tests.methods.pictures import textured
 
 if TYPE_CHECKING:

@@ -22,11 +22,11 @@ from aerocues.evaluation.dask_engine import DaskEngine
 from aerocues.evaluation.dask_scheduler import connected
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.protocol import Timing
-from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import Limits, Observer
-from aerocues.evaluation.store import Store
-from aerocues.evaluation.versions import software_versions
+from aerocues.results.measured_results import Results
+from aerocues.results.store import Store
+from aerocues.results.timing import Timing
+from aerocues.results.versions import software_versions
 from tests.evaluation.cluster import Cluster
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine

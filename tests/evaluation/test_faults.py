@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import Limits, run
+from aerocues.results.measured_results import Results
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import Rows, assert_same_rows, rows_of, strip, write_dataset

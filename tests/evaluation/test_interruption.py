@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.export import export_table
-from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import run
+from aerocues.results.export import export_table
+from aerocues.results.measured_results import Results
 from tests.evaluation.faults import workers_of
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, dataset_of, rows_of, strip, write_dataset

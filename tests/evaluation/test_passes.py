@@ -14,15 +14,15 @@ from hypothesis import strategies as st
 
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.engine import Finished
-from aerocues.evaluation.metrics import PER_THOUSAND, add_metrics
 from aerocues.evaluation.passes import Pass, passes
 from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.protocol import Timing
-from aerocues.evaluation.results import Results
 from aerocues.evaluation.run import Observer, plan_run, run
-from aerocues.evaluation.scaled_times import with_scaled_times
-from aerocues.evaluation.schema import empty_row, polars_schema
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.results.measured_results import Results
+from aerocues.results.metrics import PER_THOUSAND, add_metrics
+from aerocues.results.scaled_times import with_scaled_times
+from aerocues.results.schema import empty_row, polars_schema
+from aerocues.results.timing import Timing
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
 

@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 
 from aerocues.datasets.dataset import Dataset, Pair
 from aerocues.errors import ImageError
-from aerocues.evaluation.plan import Plan, content_hash, make_plan
-from aerocues.evaluation.protocol import MeasurementProtocol
+from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.selection import meaningful, select
+from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.results.hashing import content_hash
 from tests.evaluation.scenes import dataset_of, strip, write_dataset
 
 METHODS = opencv_methods()

@@ -6,15 +6,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from aerocues.datasets.dataset import PinholeCamera, TrueView
-from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.protocol import MeasurementProtocol, Verification
-from aerocues.evaluation.relative_pose import (
-    RelativePose,
-    estimate_pose,
-    pose_error,
-    true_pose,
-)
-from aerocues.evaluation.verification import Verifier, magsac_parameters
+from aerocues.evaluation.relative_pose import RelativePose, estimate_pose, pose_error, true_pose
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.protocol import MeasurementProtocol, Verification
+from aerocues.pipeline.verification import Verifier, magsac_parameters
 
 FIRST = PinholeCamera(640, 480, 500.0, 500.0, 319.5, 239.5)
 SECOND = PinholeCamera(800, 600, 700.0, 710.0, 390.0, 310.0)

@@ -13,11 +13,11 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.run import Limits, Observer, plan_run, run
-from aerocues.evaluation.schema import COLUMNS
 from aerocues.methods.presets import Preset
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.results.schema import COLUMNS
+from aerocues.results.timing import Timing
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import (
     assert_same_rows,

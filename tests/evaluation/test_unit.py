@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aerocues.evaluation.unit import PairWork, StageCall, Unit, split
+from aerocues.evaluation.unit import PairWork, Unit, split
 from aerocues.methods.combination import Combination
+from aerocues.processes.call import StageCall
 
 DESCRIPTORS = ("ORB", "BRISK", "SIFT")
 COMBINATIONS = [

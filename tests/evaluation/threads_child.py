@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from aerocues.evaluation.child import run_child
-from aerocues.evaluation.heartbeat import Heartbeat
+from aerocues.processes.child import run_child
+from aerocues.processes.heartbeat import Heartbeat
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:

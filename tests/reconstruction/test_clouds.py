@@ -12,12 +12,12 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.clouds import Cloud, read_cloud
-from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.cloud_distance import cloud_distances
 from aerocues.reconstruction.picture import picture_of
 from aerocues.reconstruction.references import with_distances
+from aerocues.results.clouds import Cloud, read_cloud
+from aerocues.results.metrics import Row
 
 CENTRES = np.array([[0, 0, 20], [10, 0, 20], [0, 10, 21], [10, 10, 22]], np.float32)
 

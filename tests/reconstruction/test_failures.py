@@ -15,8 +15,8 @@ import aerocues
 from aerocues.datasets.dataset import Dataset, Image
 from aerocues.datasets.decoding import FileSource
 from aerocues.errors import ReconstructionError
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.results.metrics import Row
 from tests.methods.distribution import write_distribution
 from tests.methods.pictures import textured
 from tests.reconstruction.scenes import scene_of, write_scene

@@ -8,12 +8,7 @@ import numpy as np
 import pytest
 
 from aerocues.methods.arrays import Keypoints
-from aerocues.reconstruction.diagnosis import (
-    Placement,
-    judged,
-    without_features,
-    without_links,
-)
+from aerocues.reconstruction.diagnosis import Placement, judged, without_features, without_links
 from aerocues.reconstruction.match_graph import parts_of, told_parts
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
 from aerocues.reconstruction.protocol import Requirements

@@ -15,10 +15,10 @@ from plyfile import PlyData
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError, StoreError
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
 from aerocues.reconstruction.scene import Wanted
+from aerocues.results.metrics import Row
 from tests.reconstruction.scenes import scene_of
 
 SIFT = "SIFT-SIFT-L2-FLANN"

@@ -14,8 +14,6 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Image
 from aerocues.datasets.decoding import FileSource
 from aerocues.errors import ReconstructionError, StoreError
-from aerocues.evaluation.planned_rows import METHODS
-from aerocues.evaluation.store import Store
 from aerocues.reconstruction.images import (
     Prepared,
     cameras_of,
@@ -26,6 +24,8 @@ from aerocues.reconstruction.images import (
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results
+from aerocues.results.plan_table import METHODS
+from aerocues.results.store import Store
 from tests.reconstruction.scenes import write_scene
 from tests.reconstruction.test_clouds import cloud, square
 

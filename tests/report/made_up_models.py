@@ -10,8 +10,8 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
 import aerocues
-from aerocues.evaluation.clouds import Cloud
-from aerocues.evaluation.store import Store
+from aerocues.results.clouds import Cloud
+from aerocues.results.store import Store
 from tests.report.made_up import COMBINATIONS, folder_of, measured
 
 METHODS = ("detector", "descriptor", "norm", "matcher")

@@ -7,10 +7,10 @@ from pathlib import Path
 import polars as pl
 
 from aerocues import Results
-from aerocues.evaluation.store import Store
 from aerocues.report.markdown import summary
 from aerocues.report.payload import payload_of
 from aerocues.report.report import report_entries
+from aerocues.results.store import Store
 from tests.report.made_up import COMBINATIONS, folder_of, measured
 from tests.report.made_up_models import made_models, with_models
 

@@ -9,12 +9,12 @@ import polars as pl
 import pytest
 
 import aerocues
-from aerocues.evaluation.store import Store
 from aerocues.report.clouds import clouds_of
 from aerocues.report.entry import entry_facts
 from aerocues.report.figures import write_figures
 from aerocues.report.markdown import summary
 from aerocues.report.report import report_entries, write_report
+from aerocues.results.store import Store
 from tests.report.made_up import folder_of, measured
 from tests.report.made_up_models import MODELLED, with_models
 

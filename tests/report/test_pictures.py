@@ -105,7 +105,7 @@ def own(photos: Path, tmp_path: Path) -> Results:
 
 def test_images_that_are_gone(own: Results, tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "photos")
-    payload = payload_in(own.report(tmp_path / "page.html", resamples=50))
+    payload = payload_in(aerocues.write_report(own, tmp_path / "page.html", resamples=50))
     assert payload["pictures"] == []
     assert "no pictures" in payload["method"]["notes"][-1]
 
@@ -114,7 +114,7 @@ def test_images_that_differ(own: Results, tmp_path: Path) -> None:
     for file in (tmp_path / "photos").iterdir():
         pixels = np.random.default_rng(0).integers(0, 255, (180, 240, 3), np.uint8)
         Image.fromarray(pixels).save(file)
-    payload = payload_in(own.report(tmp_path / "page.html", resamples=50))
+    payload = payload_in(aerocues.write_report(own, tmp_path / "page.html", resamples=50))
     assert payload["pictures"] == []
     assert "the images, the version of OpenCV" in payload["method"]["notes"][-1]
 
@@ -188,8 +188,10 @@ def test_pictures_give_way_to_size() -> None:
 
 
 def test_the_page_stays_below_the_limit(finished: Results, tmp_path: Path) -> None:
-    whole = finished.report(tmp_path / "whole.html", resamples=50)
+    whole = aerocues.write_report(finished, tmp_path / "whole.html", resamples=50)
     limit = whole.stat().st_size / 1e6 - 0.02
-    smaller = finished.report(tmp_path / "small.html", resamples=50, max_megabytes=limit)
+    smaller = aerocues.write_report(
+        finished, tmp_path / "small.html", resamples=50, max_megabytes=limit
+    )
     assert smaller.stat().st_size <= limit * 1e6
     assert 0 < len(payload_in(smaller)["pictures"]) < len(payload_in(whole)["pictures"])

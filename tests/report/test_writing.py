@@ -14,7 +14,7 @@ from tests.report.made_up import COMBINATIONS, folder_of, measured
 
 
 def test_results_can_report(flight: Results, tmp_path: Path) -> None:
-    page = flight.report(tmp_path / "page.html", title="Mine", resamples=50)
+    page = aerocues.write_report(flight, tmp_path / "page.html", title="Mine", resamples=50)
     assert page == tmp_path / "page.html"
     assert payload_in(page)["title"] == "Mine"
 
@@ -53,12 +53,15 @@ def test_scoring_can_be_set(flight: Results, tmp_path: Path) -> None:
 def test_an_existing_page_is_replaced(flight: Results, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     page.write_text("old")
-    assert "old" not in flight.report(page, resamples=50).read_text(encoding="utf-8")[:9]
+    assert (
+        "old"
+        not in aerocues.write_report(flight, page, resamples=50).read_text(encoding="utf-8")[:9]
+    )
 
 
 def test_a_page_that_cannot_be_written(flight: Results, tmp_path: Path) -> None:
     with pytest.raises(StoreError, match="cannot write"):
-        flight.report(tmp_path / "missing" / "page.html", resamples=50)
+        aerocues.write_report(flight, tmp_path / "missing" / "page.html", resamples=50)
 
 
 def test_results_without_rows(tmp_path: Path, flight: Results) -> None:
@@ -66,7 +69,7 @@ def test_results_without_rows(tmp_path: Path, flight: Results) -> None:
     for part in (folder / "parts").glob("*.parquet"):
         part.unlink()
     with pytest.raises(ScoreError, match="no measured rows"):
-        aerocues.Results(folder).report(tmp_path / "page.html")
+        aerocues.write_report(aerocues.Results(folder), tmp_path / "page.html")
 
 
 def test_results_that_suit_different_presets(tmp_path: Path, flight: Results) -> None:

@@ -13,11 +13,11 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
 from aerocues.evaluation.engine import Finished, Watch
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.store import Store
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.presets import preset_named
 from aerocues.methods.selection import select
+from aerocues.results.metrics import Row
+from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.settings import preset_named as scoring_named
 from aerocues.tuning.bench import Bench

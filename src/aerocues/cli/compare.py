@@ -102,8 +102,8 @@ def compare(
 
 def _write_factors(entries: list[Entry], file: Path) -> None:
     from aerocues.errors import ScoreError
-    from aerocues.evaluation.export import write_file
-    from aerocues.evaluation.whole_files import json_content
+    from aerocues.results.export import write_file
+    from aerocues.results.whole_files import json_content
     from aerocues.scoring.platforms import device_factors
 
     if len(entries) != 2 or entries[0].dataset != entries[1].dataset:

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from aerocues.evaluation.plan import Plan
-    from aerocues.evaluation.protocol import Timing
+    from aerocues.results.timing import Timing
 
 SELECTION = ("combinations", "detectors", "descriptors", "everything")
 LONGEST_LIST = 10

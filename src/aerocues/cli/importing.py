@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from aerocues.results import Results
+    from aerocues.results.measured_results import Results
 
 
 def import_table(

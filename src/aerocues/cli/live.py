@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds, told_aside, waiting
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.protocol import Timing
+from aerocues.results.timing import Timing
 
 if TYPE_CHECKING:
     from rich.console import Group

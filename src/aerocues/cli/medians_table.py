@@ -26,7 +26,7 @@ def _seconds(value: float | None) -> str:
 def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
     from rich.text import Text
 
-    from aerocues.evaluation.medians import PAIR, combination_medians
+    from aerocues.results.medians import PAIR, combination_medians
 
     ranked = combination_medians(rows)
     best = ranked.head(top)

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from aerocues.cli.console import count
 from aerocues.evaluation.engine import Activity, Finished
 from aerocues.evaluation.plan import Exclusion, Plan
-from aerocues.evaluation.protocol import Timing
 from aerocues.evaluation.run import Observer
+from aerocues.results.timing import Timing
 
 SECONDS_BETWEEN_LINES = 10.0
 SHARE_BETWEEN_LINES = 0.1

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from aerocues.cli.console import count
 from aerocues.cli.progress import spoken_seconds
-from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.engine import Doing
 from aerocues.reconstruction.options import ReconstructionObserver
+from aerocues.results.metrics import Row
 
 if TYPE_CHECKING:
     from rich.status import Status

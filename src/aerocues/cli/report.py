@@ -135,9 +135,9 @@ def _write_figures(entries: list[ReportEntry], folder: Path) -> None:
 
 
 def _write_markdown(entries: list[ReportEntry], title: str | None, output: Path | None) -> None:
-    from aerocues.evaluation.export import write_file
     from aerocues.report.markdown import summary
     from aerocues.report.report import default_title
+    from aerocues.results.export import write_file
 
     text = summary(entries, title or default_title(entries))
     if output is None or str(output) == STANDARD_OUTPUT:

@@ -13,7 +13,7 @@ from aerocues.cli.output import STANDARD_OUTPUT, write_table
 if TYPE_CHECKING:
     import polars as pl
 
-    from aerocues.evaluation.results import Results
+    from aerocues.results.measured_results import Results
 
 TOP = 5
 
@@ -100,7 +100,7 @@ def _print_columns() -> None:
     from rich.text import Text
 
     from aerocues.cli.console import plain_table, print_table, standard_output
-    from aerocues.evaluation.schema import COLUMNS
+    from aerocues.results.schema import COLUMNS
 
     table = plain_table("column", "unit", "definition")
     for column in COLUMNS:

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.cli.progress import Tally
-    from aerocues.evaluation.results import Results
     from aerocues.methods.strongest import KeypointLimit
+    from aerocues.results.measured_results import Results
     from aerocues.scoring.measured import Measured
 
 MEGABYTES = 1024
@@ -256,7 +256,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
     from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
     from aerocues.cli.status import times_of
-    from aerocues.evaluation.results import timing_counts
+    from aerocues.results.measured_results import timing_counts
     from aerocues.scoring.measured import MeasuredRows
 
     table = results.table().filter(pl.col("dataset") == dataset)

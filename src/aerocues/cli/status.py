@@ -13,7 +13,7 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from aerocues.evaluation.results import RunStatus
+    from aerocues.results.measured_results import RunStatus
 
 LONGEST_MESSAGE = 160
 LONGEST_LIST = 40

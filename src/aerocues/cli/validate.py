@@ -52,11 +52,7 @@ def validate(
     """
     import aerocues
     from aerocues.cli.interruption import interruptible
-    from aerocues.cli.relations_table import (
-        found_relations,
-        print_relations,
-        relation_facts,
-    )
+    from aerocues.cli.relations_table import found_relations, print_relations, relation_facts
     from aerocues.cli.scoring import table_and_settings
     from aerocues.cli.validation_tables import print_validation
     from aerocues.scoring.cues import score

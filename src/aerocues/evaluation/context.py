@@ -7,15 +7,17 @@ from dataclasses import asdict
 
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import MethodUnavailableError
-from aerocues.evaluation.plan import Plan, content_hash
-from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Timing
+from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.unit import Context
-from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol
+from aerocues.results.hashing import content_hash
+from aerocues.results.timing import Timing
+from aerocues.results.versions import machine_facts, machine_name, software_versions
 
 
 def make_context(

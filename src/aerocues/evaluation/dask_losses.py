@@ -7,10 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.giving_up import settle_loss
-from aerocues.evaluation.unit import Context, StageCall, Unit
+from aerocues.evaluation.unit import Context, Unit
+from aerocues.processes.call import StageCall
+from aerocues.processes.child_process import Loss
 
 if TYPE_CHECKING:
     from distributed import KilledWorker

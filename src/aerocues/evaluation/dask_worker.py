@@ -22,8 +22,8 @@ from distributed import Worker, WorkerPlugin, get_worker
 from aerocues.errors import EngineError, ImageError
 from aerocues.evaluation.engine import Activity, Finished, Watch
 from aerocues.evaluation.unit import Context, Unit
-from aerocues.evaluation.versions import machine_name, software_versions
 from aerocues.evaluation.worker_pool import WorkerPool
+from aerocues.results.versions import machine_name, software_versions
 
 SAME_VERSIONS = ("aerocues", "opencv")
 # A process is kept for the next unit, and what it holds is given back when none comes.

@@ -6,8 +6,9 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.unit import Context, StageCall, Unit
+from aerocues.evaluation.unit import Context, Unit
+from aerocues.processes.call import StageCall
+from aerocues.results.metrics import Row
 
 
 @dataclass(frozen=True)

@@ -8,28 +8,24 @@ from typing import TypeVar
 import cv2
 
 from aerocues.datasets.dataset import Image, Pair
-from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.feature_cache import FeatureCache
-from aerocues.evaluation.feature_folder import FeatureFolder
-from aerocues.evaluation.features import (
+from aerocues.evaluation.rows import begin_row
+from aerocues.evaluation.truth_comparison import TwoViews
+from aerocues.evaluation.two_views import Announce, TwoViewMeasurement, record_time
+from aerocues.evaluation.unit import Context, PairWork, Unit
+from aerocues.methods.combination import Combination
+from aerocues.methods.making import DescriptorStage, DetectorStage, make_descriptor, make_detector
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.feature_cache import FeatureCache
+from aerocues.pipeline.feature_folder import FeatureFolder
+from aerocues.pipeline.features import (
     Described,
     FeatureExtractor,
     ImageFeatures,
     StageError,
     run_stage,
 )
-from aerocues.evaluation.metrics import Row, add_metrics
-from aerocues.evaluation.rows import begin_row
-from aerocues.evaluation.truth_comparison import TwoViews
-from aerocues.evaluation.two_views import Announce, TwoViewMeasurement, record_time
-from aerocues.evaluation.unit import Context, PairWork, StageCall, Unit
-from aerocues.methods.combination import Combination
-from aerocues.methods.making import (
-    DescriptorStage,
-    DetectorStage,
-    make_descriptor,
-    make_detector,
-)
+from aerocues.processes.call import StageCall
+from aerocues.results.metrics import Row, add_metrics
 
 Found = TypeVar("Found")
 
@@ -53,7 +49,11 @@ class Evaluator:
         self._extractor = FeatureExtractor(clock, protocol.seed, protocol.limit)
         self._two_views = TwoViewMeasurement(context, clock, announce)
         self._cache = FeatureCache()
-        self._folder = FeatureFolder(context, context.features) if context.features else None
+        self._folder = (
+            FeatureFolder(context.features, context.methods, protocol, context.machine)
+            if context.features
+            else None
+        )
         self._detectors: dict[str, DetectorStage] = {}
         self._descriptors: dict[str, DescriptorStage] = {}
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.child_process import Loss
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.rows import failed_rows
-from aerocues.evaluation.unit import Context, StageCall, Unit, split
+from aerocues.evaluation.unit import Context, Unit, split
+from aerocues.processes.call import StageCall
+from aerocues.processes.child_process import Loss
 
 
 def settle_loss(context: Context, unit: Unit, loss: Loss) -> tuple[Finished | None, list[Unit]]:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.protocol import Timing
 from aerocues.methods.exact.availability import why_not_exact
+from aerocues.results.timing import Timing
 
 TIMED_PAIRS = 5
 ALL_PAIRS = 0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,15 +12,9 @@ from aerocues.evaluation.cost import costly_descriptors, estimate_pair_seconds
 from aerocues.evaluation.planned_rows import PlannedRow
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
+from aerocues.results.hashing import content_hash
 
 PAIRS_PER_UNIT = 5
-KEY_LENGTH = 32
-
-
-def content_hash(content: object) -> str:
-    """Hexadecimal hash of anything that JSON can write."""
-    text = json.dumps(content, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:KEY_LENGTH]
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ import time
 import cv2
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS, empty_row
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.combination import Combination
+from aerocues.results.metrics import Row
+from aerocues.results.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS, empty_row
 
 
 def begin_row(context: Context, pair: Pair, combination: Combination, key: str) -> Row:

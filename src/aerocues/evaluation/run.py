@@ -15,16 +15,17 @@ from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context, run_facts
 from aerocues.evaluation.engine import Activity, Engine, Finished
 from aerocues.evaluation.passes import TIMED_PAIRS, Pass, passes, timed_alone
-from aerocues.evaluation.plan import Plan, content_hash, make_plan
+from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.planned_rows import planned_table
-from aerocues.evaluation.protocol import Timing
-from aerocues.evaluation.results import Results
-from aerocues.evaluation.store import RUN, Store
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.results.hashing import content_hash
+from aerocues.results.measured_results import Results
+from aerocues.results.store import RUN, Store
+from aerocues.results.timing import Timing
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -189,7 +190,7 @@ def run(
     parts = as_preset(preset)
     context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
     if features is not None:
-        from aerocues.evaluation.feature_folder import checked_folder
+        from aerocues.pipeline.feature_folder import checked_folder
 
         context = replace(context, features=checked_folder(Path(features).absolute()))
     kept = {"detectors": detectors, "descriptors": descriptors}
@@ -273,5 +274,5 @@ def _measure(
 ) -> None:
     with contextlib.closing(finished_units):  # an interruption ends the workers here and now
         for finished in finished_units:
-            store.write_finished(finished)
+            store.write_finished(finished.unit.detector, finished.rows)
             observer.finished(finished)

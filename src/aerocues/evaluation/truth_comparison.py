@@ -9,12 +9,12 @@ from aerocues.datasets.true_geometry import Located
 from aerocues.evaluation import ground_truth
 from aerocues.evaluation.correspondence import Correspondence, PlaneCorrespondence
 from aerocues.evaluation.depth_correspondence import DepthCorrespondence
-from aerocues.evaluation.features import Described, ImageFeatures, run_stage
-from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.relative_pose import estimate_pose, pose_error, true_pose
-from aerocues.evaluation.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS
-from aerocues.evaluation.verification import IndexArray, Verifier
 from aerocues.methods.arrays import Float32Array
+from aerocues.pipeline.features import Described, ImageFeatures, run_stage
+from aerocues.pipeline.verification import IndexArray, Verifier
+from aerocues.results.metrics import Row
+from aerocues.results.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,17 @@ from collections.abc import Callable
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.brute_force_time import SampledBruteForce
-from aerocues.evaluation.clock import Clock, StageTime
-from aerocues.evaluation.features import run_stage, warm_up
-from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
-from aerocues.evaluation.unit import Context, StageCall
-from aerocues.evaluation.verification import Verifiers
+from aerocues.evaluation.unit import Context
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_matcher
+from aerocues.pipeline.brute_force_time import SampledBruteForce
+from aerocues.pipeline.clock import Clock, StageTime
+from aerocues.pipeline.features import run_stage, warm_up
+from aerocues.pipeline.verification import Verifiers
+from aerocues.processes.call import StageCall
+from aerocues.results.metrics import Row
 
 BRUTE_FORCE = "BF"
 WARM_UP_FEATURES = 32

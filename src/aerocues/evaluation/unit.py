@@ -7,9 +7,11 @@ from itertools import pairwise
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.protocol import MeasurementProtocol, Timing
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
+from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.processes.call import StageCall
+from aerocues.results.timing import Timing
 
 
 @dataclass(frozen=True)
@@ -59,22 +61,6 @@ class Unit:
             replace(self, work=self.work[start:end], cost=share * (end - start))
             for start, end in pairwise(bounds)
         ]
-
-
-@dataclass(frozen=True)
-class StageCall:
-    """The call that a worker is in: what to blame if the process does not survive it."""
-
-    stage: str
-    pair: int
-    image: str
-    detector: str
-    descriptor: str = ""
-    combination: str = ""
-
-    def __str__(self) -> str:
-        method = self.combination or "-".join(filter(None, (self.detector, self.descriptor)))
-        return f"{self.stage} {method} on {self.image}"
 
 
 @dataclass(frozen=True)

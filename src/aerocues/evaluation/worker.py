@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from multiprocessing.connection import Connection
 
-from aerocues.evaluation.child import run_child
-from aerocues.evaluation.heartbeat import Heartbeat
+from aerocues.processes.child import run_child
+from aerocues.processes.heartbeat import Heartbeat
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 
-from aerocues.evaluation.child_process import ChildProcess, Loss
 from aerocues.evaluation.engine import Activity
-from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.unit import Context, Unit
+from aerocues.processes.child_process import ChildProcess, Loss
+from aerocues.results.metrics import Row
 
 
 class WorkerProcess(ChildProcess):

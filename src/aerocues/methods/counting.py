@@ -8,12 +8,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from aerocues.methods.combination import Combination
-from aerocues.methods.compatibility import (
-    RULES,
-    incompatibility,
-    why_meaningless,
-    why_unavailable,
-)
+from aerocues.methods.compatibility import RULES, incompatibility, why_meaningless, why_unavailable
 from aerocues.methods.registry import Methods
 from aerocues.methods.selection import split_names, takes
 

@@ -10,13 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import MethodUnavailableError
-from aerocues.methods.arrays import (
-    DescriptorArray,
-    Features,
-    Keypoints,
-    Matches,
-    finite_features,
-)
+from aerocues.methods.arrays import DescriptorArray, Features, Keypoints, Matches, finite_features
 from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.evaluation.clouds import Cloud
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.alignment import root_mean_square, similarity
+from aerocues.results.clouds import Cloud
+from aerocues.results.metrics import Row
 
 Array = NDArray[np.float64]
 

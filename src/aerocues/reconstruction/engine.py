@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import wait
 
 from aerocues.errors import AerocuesError
-from aerocues.evaluation.child_process import ChildProcess, Loss
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.unit import StageCall
 from aerocues.methods.combination import Combination
+from aerocues.processes.call import StageCall
+from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.reconstruction.images import Prepared
 from aerocues.reconstruction.scene import Scene
+from aerocues.results.metrics import Row
 
 POLL_SECONDS = 0.2
 SECONDS_TO_END = 5.0

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from aerocues.evaluation.feature_arrays import (
+from aerocues.methods.arrays import Features
+from aerocues.methods.combination import Combination
+from aerocues.pipeline.feature_arrays import (
     KEYPOINTS,
     keypoint_arrays,
     keypoints_of,
     read_arrays,
     write_arrays,
 )
-from aerocues.methods.arrays import Features
-from aerocues.methods.combination import Combination
 from aerocues.reconstruction.scene import FEATURES, Scene
 
 

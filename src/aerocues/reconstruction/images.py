@@ -16,9 +16,9 @@ from aerocues.datasets.dataset import Dataset, Image, PinholeCamera
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.header import read_header
 from aerocues.errors import ImageError, ReconstructionError
-from aerocues.evaluation.whole_files import json_content, write_whole
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.scene import IMAGES, CameraGroup
+from aerocues.results.whole_files import json_content, write_whole
 
 LIST = "images.json"
 JPEG_QUALITY = 95

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.evaluation.whole_files import write_whole
 from aerocues.methods.arrays import Float32Array, Int32Array, Keypoints
+from aerocues.results.whole_files import write_whole
 
 Names = tuple[str, str]
 BROKEN = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error)

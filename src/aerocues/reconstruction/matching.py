@@ -8,13 +8,13 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.features import FeatureExtractor, StageError, run_stage
-from aerocues.evaluation.unit import StageCall
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import MatcherStage, make_descriptor, make_detector, make_matcher
 from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.features import FeatureExtractor, StageError, run_stage
+from aerocues.processes.call import StageCall
 from aerocues.reconstruction.feature_files import FeatureFiles, TimedFeatures
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.reconstruction.scene import Scene

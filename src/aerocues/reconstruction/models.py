@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.clouds import Cloud, read_cloud
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES
-from aerocues.evaluation.reconstructions import reconstruction_table
-from aerocues.evaluation.whole_files import json_content, parquet_content, write_whole
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.exports import MODEL
 from aerocues.reconstruction.images import LIST
 from aerocues.reconstruction.one_model import CLOUD, OUTCOME, PICTURE
 from aerocues.reconstruction.scene import FEATURES, IMAGES
+from aerocues.results.clouds import Cloud, read_cloud
+from aerocues.results.metrics import Row
+from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES
+from aerocues.results.reconstructions import reconstruction_table
+from aerocues.results.whole_files import json_content, parquet_content, write_whole
 
 if TYPE_CHECKING:
     import polars as pl

@@ -7,10 +7,8 @@ import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from aerocues.evaluation.features import StageError
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.whole_files import write_whole
 from aerocues.methods.combination import Combination
+from aerocues.pipeline.features import StageError
 from aerocues.reconstruction.colmap import registered
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import (
@@ -21,14 +19,7 @@ from aerocues.reconstruction.diagnosis import (
     without_links,
     without_model,
 )
-from aerocues.reconstruction.exports import (
-    MODEL,
-    PLY,
-    TEXT,
-    UNDISTORTED,
-    export_model,
-    undistort,
-)
+from aerocues.reconstruction.exports import MODEL, PLY, TEXT, UNDISTORTED, export_model, undistort
 from aerocues.reconstruction.mapping import map_scene
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.matching import Announce, SceneMatcher, call_of
@@ -42,6 +33,8 @@ from aerocues.reconstruction.truth import (
     true_positions,
 )
 from aerocues.reconstruction.verification import linked_pairs, verify
+from aerocues.results.metrics import Row
+from aerocues.results.whole_files import write_whole
 
 Result = TypeVar("Result")
 MATCHES = "matches.npz"

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from aerocues.errors import ReconstructionError
-from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.run import usable_cores
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
 from aerocues.reconstruction.engine import Doing, ReconstructionLimits
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.scene import Wanted
+from aerocues.results.metrics import Row
 
 TIME_LIMIT = 1800.0
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from aerocues.evaluation.clouds import Cloud
+from aerocues.results.clouds import Cloud
 
 Array = NDArray[np.float64]
 SIZE = (1400, 760)

@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Literal
 
 from aerocues.errors import ReconstructionError
-from aerocues.evaluation.protocol import ChanceTest, Verification
+from aerocues.pipeline.protocol import ChanceTest, Verification
 
 Intrinsics = Literal["fixed", "refine"]
 Mapper = Literal["incremental", "global"]

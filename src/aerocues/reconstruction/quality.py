@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.clouds import Cloud
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.alignment import Similarity
 from aerocues.reconstruction.colmap import camera_from_world, registered
 from aerocues.reconstruction.truth import TruePositions
+from aerocues.results.clouds import Cloud
+from aerocues.results.metrics import Row
 
 
 def model_figures(model: Any) -> Row:

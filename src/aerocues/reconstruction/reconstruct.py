@@ -11,11 +11,6 @@ from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError, StoreError
-from aerocues.evaluation.folder_lock import folder_lock
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.store import Store
-from aerocues.evaluation.versions import machine_facts, machine_name, software_versions
-from aerocues.evaluation.whole_files import json_content, write_whole
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import as_preset
@@ -42,6 +37,11 @@ from aerocues.reconstruction.models import (
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
 from aerocues.reconstruction.references import with_distances
 from aerocues.reconstruction.scene import Scene
+from aerocues.results.folder_lock import folder_lock
+from aerocues.results.metrics import Row
+from aerocues.results.store import Store
+from aerocues.results.versions import machine_facts, machine_name, software_versions
+from aerocues.results.whole_files import json_content, write_whole
 
 
 def reconstruct_scene(

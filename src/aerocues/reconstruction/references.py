@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from aerocues.evaluation.clouds import Cloud
-from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.cloud_distance import CloudDistances, cloud_distances
+from aerocues.results.clouds import Cloud
+from aerocues.results.metrics import Row
 
 
 def with_distances(

@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.plan import content_hash
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 from aerocues.reconstruction.protocol import ReconstructionProtocol
+from aerocues.results.hashing import content_hash
 
 IMAGES = "images"
 FEATURES = "features"

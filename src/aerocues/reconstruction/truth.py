@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, TrueView
 from aerocues.datasets.gps import east_north_up
-from aerocues.evaluation.metrics import Row
 from aerocues.reconstruction.alignment import (
     Similarity,
     extent,
@@ -20,6 +19,7 @@ from aerocues.reconstruction.alignment import (
 )
 from aerocues.reconstruction.colmap import camera_from_world, registered
 from aerocues.reconstruction.protocol import Requirements
+from aerocues.results.metrics import Row
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.protocol import MeasurementProtocol
-from aerocues.evaluation.verification import Verifier
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.pipeline.verification import Verifier
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from multiprocessing.connection import Connection
 
-from aerocues.evaluation.child import run_child
-from aerocues.evaluation.heartbeat import Heartbeat
 from aerocues.methods.combination import Combination
+from aerocues.processes.child import run_child
+from aerocues.processes.heartbeat import Heartbeat
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:

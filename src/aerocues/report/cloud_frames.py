@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.evaluation.clouds import Cloud
 from aerocues.reconstruction.alignment import Similarity, similarity
+from aerocues.results.clouds import Cloud
 
 METRES = "m"
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import StoreError
-from aerocues.evaluation.clouds import Cloud
 from aerocues.report.arrays import packed_bytes, packed_floats, packed_scaled
 from aerocues.report.cloud_frames import in_one_frame
 from aerocues.report.entry import ReportEntry
+from aerocues.results.clouds import Cloud
 
 MOST_CLOUDS = 10
 MOST_POINTS = 6000

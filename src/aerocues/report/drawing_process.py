@@ -6,9 +6,9 @@ from types import TracebackType
 
 import psutil
 
-from aerocues.evaluation.child_process import ChildProcess, Loss
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
+from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.report.drawn_matches import DrawnMatches
 
 SECONDS_TO_END = 5.0

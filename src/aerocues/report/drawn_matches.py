@@ -10,18 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.clock import Clock
-from aerocues.evaluation.features import (
-    FeatureExtractor,
-    ImageFeatures,
-    StageError,
-    run_stage,
-)
 from aerocues.evaluation.unit import Context
-from aerocues.evaluation.verification import Verifiers
 from aerocues.methods.arrays import Features
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.features import FeatureExtractor, ImageFeatures, StageError, run_stage
+from aerocues.pipeline.verification import Verifiers
 
 Floats = NDArray[np.float32]
 

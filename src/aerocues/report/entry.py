@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from aerocues.evaluation.medians import combination_medians
-from aerocues.evaluation.scaled_times import SCALED
-from aerocues.evaluation.statuses import STATUSES
 from aerocues.report.arrays import packed_bytes
 from aerocues.report.columns import column_facts, matrix_positions
 from aerocues.report.curves import curves_of, step_of
 from aerocues.report.models import model_facts
 from aerocues.report.scores import method_labels, score_facts
 from aerocues.report.validation import validation_facts
+from aerocues.results.medians import combination_medians
+from aerocues.results.scaled_times import SCALED
+from aerocues.results.statuses import STATUSES
 from aerocues.scoring.across import Entry
 from aerocues.scoring.combinations import SUCCESS, SUCCESS_WITHOUT_CHANCE_TEST
 from aerocues.scoring.ranking import Ranking
@@ -27,7 +27,7 @@ from aerocues.scoring.validation import Validation
 if TYPE_CHECKING:
     import polars as pl
 
-    from aerocues.evaluation.results import Results
+    from aerocues.results.measured_results import Results
 
 NOT_MEASURED = "not measured"
 STAGES = ("detect", "describe", "match", "verify", "total")

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import MethodUnavailableError, StoreError
-from aerocues.evaluation.export import write_file
 from aerocues.report.entry import ReportEntry
 from aerocues.report.model_figures import draw_models, draw_relation
 from aerocues.report.relation_figures import draw_critical_difference, draw_pareto, draw_times
 from aerocues.report.score_figures import draw_heat_maps, draw_scores, draw_weights
+from aerocues.results.export import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

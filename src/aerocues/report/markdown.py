@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from aerocues.evaluation.typesetting import as_markdown
 from aerocues.report.comparison import comparison_of
 from aerocues.report.entry import ReportEntry
 from aerocues.report.model_figures import ordered_models
 from aerocues.report.scores import GOOD, best_binary, cautions, fastest_good
+from aerocues.results.typesetting import as_markdown
 
 if TYPE_CHECKING:
     import polars as pl

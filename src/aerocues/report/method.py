@@ -7,13 +7,13 @@ from itertools import product
 from typing import Any
 
 from aerocues.errors import SelectionError
-from aerocues.evaluation.metrics import METRICS
-from aerocues.evaluation.schema import COLUMNS
-from aerocues.evaluation.statuses import STATUSES
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_meaningless
 from aerocues.methods.plugins import installed_methods
 from aerocues.report.columns import criterion_facts
+from aerocues.results.metrics import METRICS
+from aerocues.results.schema import COLUMNS
+from aerocues.results.statuses import STATUSES
 
 CITATION = (
     "aerocues {version}, and the thesis that it grew out of: Towards Efficient 3D Reconstruction "

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import ScoreError
-from aerocues.evaluation.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
+from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
 from aerocues.scoring.combinations import COMBINATION, METHODS
 from aerocues.scoring.criteria import CRITERIA, Better
 from aerocues.scoring.outcomes import FEWEST_MODELS, OUTCOMES, Relations, relations_of
@@ -14,7 +14,7 @@ from aerocues.scoring.outcomes import FEWEST_MODELS, OUTCOMES, Relations, relati
 if TYPE_CHECKING:
     import polars as pl
 
-    from aerocues.evaluation.schema import Column
+    from aerocues.results.schema import Column
 
 OK = "ok"
 REFERENCE = "reference"

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.evaluation.medians import combination_medians
 from aerocues.report.entry import ReportEntry
 from aerocues.report.score_figures import COLOURS, LINE, TOP, WIDTH
+from aerocues.results.medians import combination_medians
 from aerocues.scoring.cues import Scores
 from aerocues.scoring.pareto import pareto_front
 

@@ -9,11 +9,11 @@ from typing import Any
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Pair
 from aerocues.errors import DatasetError
-from aerocues.evaluation.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.evaluation.unit import Context
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.preset_files import recorded_preset
 from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.report.entry import ReportEntry
 
 HINT = "name their place with --images, in the form that 'aerocues run' takes"

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from aerocues.errors import ScoreError, StoreError
-from aerocues.evaluation.export import write_file
-from aerocues.evaluation.results import Results
 from aerocues.report.entry import ReportEntry
+from aerocues.results.export import write_file
+from aerocues.results.measured_results import Results
 from aerocues.scoring.across import entries_of
 from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.ranking import rank_alternatives

@@ -16,12 +16,7 @@ from aerocues.scoring.friedman import CriticalDifference, critical_difference
 from aerocues.scoring.hierarchy import hierarchy
 from aerocues.scoring.pareto import pareto_of_criteria
 from aerocues.scoring.rank_reversal import RankReversal, rank_reversal
-from aerocues.scoring.sensitivity import (
-    Variants,
-    by_aggregation,
-    by_alpha,
-    by_criterion_left_out,
-)
+from aerocues.scoring.sensitivity import Variants, by_aggregation, by_alpha, by_criterion_left_out
 
 if TYPE_CHECKING:
     import polars as pl

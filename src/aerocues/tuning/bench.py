@@ -11,13 +11,14 @@ from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.context import run_facts
 from aerocues.evaluation.cost import estimate_pair_seconds
 from aerocues.evaluation.engine import Activity, Engine
-from aerocues.evaluation.metrics import Row
-from aerocues.evaluation.plan import Plan, content_hash, make_plan
+from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.planned_rows import PlannedRow, planned_table
-from aerocues.evaluation.store import Store
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
+from aerocues.results.hashing import content_hash
+from aerocues.results.metrics import Row
+from aerocues.results.store import Store
 
 Measurement = tuple[int, Combination]
 """The number of a pair, and what is measured on it."""
@@ -125,7 +126,7 @@ class Bench:
     ) -> None:
         with contextlib.closing(engine.run(units, self.context, look)) as finished_units:
             for finished in finished_units:
-                self._store.write_finished(finished)
+                self._store.write_finished(finished.unit.detector, finished.rows)
                 self._rows.update((str(row["row_key"]), row) for row in finished.rows)
 
     def _units(self, rows: Sequence[PlannedRow]) -> list[Unit]:

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from aerocues.evaluation.cost import TYPICAL_MEGAPIXELS, match_seconds
-from aerocues.evaluation.metrics import Row
 from aerocues.evaluation.two_views import BRUTE_FORCE
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
+from aerocues.results.metrics import Row
 from aerocues.tuning.scales import Array
 
 # What exact search and timing on a part take of the time of brute force, and at least; measured.

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from aerocues.errors import SelectionError
-from aerocues.evaluation.metrics import Row, add_metrics
 from aerocues.json_files import read_json
+from aerocues.results.metrics import Row, add_metrics
 
 ANY = "*"
 STAGES: dict[str, tuple[str, ...]] = {

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from aerocues.evaluation.engine import Engine
-from aerocues.evaluation.metrics import Row
 from aerocues.methods.combination import Combination
+from aerocues.results.metrics import Row
 from aerocues.scoring.combinations import SUCCESS
 from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.long_form import values_of
@@ -123,6 +123,6 @@ def rows_frame(rows: Sequence[Row]) -> pl.DataFrame:
     """Measured rows as a table."""
     import polars as pl
 
-    from aerocues.evaluation.schema import polars_schema
+    from aerocues.results.schema import polars_schema
 
     return pl.DataFrame(rows, schema=polars_schema(), orient="row")

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from aerocues.evaluation.plan import content_hash
-from aerocues.evaluation.store import RACE
-from aerocues.evaluation.whole_files import json_content, write_whole
+from aerocues.results.hashing import content_hash
+from aerocues.results.store import RACE
+from aerocues.results.whole_files import json_content, write_whole
 
 
 @dataclass(frozen=True)

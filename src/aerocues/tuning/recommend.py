@@ -12,14 +12,14 @@ from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
 from aerocues.evaluation.engine import Activity
-from aerocues.evaluation.plan import content_hash
 from aerocues.evaluation.run import Limits, local_engine
-from aerocues.evaluation.store import Store
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.results.hashing import content_hash
+from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import Objective, objective_named
 from aerocues.scoring.settings import ScorePreset, preset_named

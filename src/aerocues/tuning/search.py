@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aerocues.evaluation.engine import Activity, Engine
-from aerocues.evaluation.metrics import Row
+from aerocues.results.metrics import Row
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.grids import Setting
 from aerocues.tuning.image_arena import criterion_values, rows_frame

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from aerocues.evaluation.medians import METHODS
 from aerocues.methods.combination import Combination
+from aerocues.results.medians import METHODS
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_arena import rows_frame

@@ -15,14 +15,14 @@ from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
 from aerocues.evaluation.engine import Activity
 from aerocues.evaluation.run import Limits, local_engine
-from aerocues.evaluation.store import Store
 from aerocues.evaluation.unit import Context
-from aerocues.evaluation.versions import machine_name, software_versions
 from aerocues.methods.parameters import Value
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.preset_files import place_for_preset, write_preset
 from aerocues.methods.presets import Preset, preset_named
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.results.store import Store
+from aerocues.results.versions import machine_name, software_versions
 from aerocues.tuning.bench import Bench
 from aerocues.tuning.search import Field, Finding, Search
 from aerocues.tuning.splits import Split, given_split, split_pairs

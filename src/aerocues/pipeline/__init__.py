@@ -1,0 +1,1 @@
+"""One core: a combination turns images into features, matches and a verified geometry."""

@@ -1,0 +1,1 @@
+"""The results folder: schema, rows, reading, importing and exporting."""

@@ -1,0 +1,82 @@
+"""Tables as files: CSV, Parquet, JSON, Markdown and LaTeX."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from aerocues.errors import StoreError
+from aerocues.results.typesetting import as_latex, as_markdown
+
+if TYPE_CHECKING:
+    import polars as pl
+
+WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
+    "csv": lambda table, file: table.write_csv(file),
+    "parquet": lambda table, file: table.write_parquet(file),
+    "json": lambda table, file: file.write(table.write_json().encode()),
+    "markdown": lambda table, file: file.write(as_markdown(table).encode()),
+    "latex": lambda table, file: file.write(as_latex(table).encode()),
+}
+# These hold lists and the like, too.
+FORMS_OF_ANYTHING = ("parquet", "json")
+
+
+def table_content(table: pl.DataFrame, form: str) -> memoryview:
+    """A table as the content of a file; StoreError where it has no place in that form."""
+    import polars as pl
+
+    content = io.BytesIO()
+    try:
+        WRITERS[form](table, content)
+    except pl.exceptions.PolarsError as error:
+        others = " or ".join(f"--{name}" for name in FORMS_OF_ANYTHING if name != form)
+        reason = " ".join(str(error).split())
+        raise StoreError(
+            f"this table cannot be written as {form.upper()}: {reason}; use {others}"
+        ) from error
+    return content.getbuffer()
+
+
+def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
+    """Write a table to a file; one that is there is replaced, whole or not at all.
+
+    Parameters
+    ----------
+    table : pl.DataFrame
+    target : path
+        A file, or a device or pipe.
+    form : {"csv", "parquet", "json", "markdown", "latex"}
+        The last two are for people: numbers are rounded to four digits.
+
+    Raises
+    ------
+    StoreError
+        If it cannot be written, or the form has no place for what it holds.
+    """
+    # Not to the file at once: polars has errors of its own for a disk that is full.
+    write_file(target, table_content(table, form))
+
+
+def write_file(target: Path, content: bytes | memoryview) -> None:
+    """Write a file, whole or not at all, or to a device or pipe; StoreError if that fails."""
+    path = target.expanduser().resolve()  # a link stays a link
+    is_special = path.exists() and not path.is_file() and not path.is_dir()
+    beside = path if is_special else path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(None, "it is a folder")
+        with beside.open("wb") as file:
+            file.write(content)
+        if not is_special:
+            beside.replace(path)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write {target}: {error.strerror or error}; give another file"
+        ) from error
+    finally:
+        if not is_special:
+            beside.unlink(missing_ok=True)

@@ -1,0 +1,40 @@
+"""Files in a results folder: written whole, read with errors that say what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aerocues.errors import StoreError
+from aerocues.results.whole_files import write_whole
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+class FolderFiles:
+    """A folder whose files are written beside and renamed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def _write(self, target: Path, content: bytes) -> None:
+        try:
+            write_whole({target: content})
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise StoreError(
+                f"cannot write {target}: {reason}; what was finished is kept: make room or access "
+                "and run the same command again"
+            ) from error
+
+    def _collect(self, rows: pl.LazyFrame) -> pl.DataFrame:
+        import polars as pl
+
+        try:
+            return rows.collect()
+        except (pl.exceptions.PolarsError, OSError) as error:
+            raise StoreError(
+                f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
+                "remove the damaged part and run the same command again"
+            ) from error

@@ -1,0 +1,132 @@
+"""A results folder as one file, to carry it to another machine."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from aerocues.errors import StoreError
+from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED
+from aerocues.results.store import PARTS, PLAN, RUN, Store
+from aerocues.results.whole_files import json_content, parquet_content
+
+if TYPE_CHECKING:
+    import polars as pl
+
+SINGLE_PART = f"{PARTS}/all.parquet"
+MEMBER = re.compile(
+    rf"{re.escape(PLAN)}|{re.escape(RECONSTRUCTED)}|{RUN}|{PARTS}/[^/]+\.parquet|{CLOUDS}/[^/]+\.npz"
+)
+EARLIEST = (1980, 1, 1, 0, 0, 0)
+# What zipfile raises on damage; RuntimeError stands for encryption.
+BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError)
+
+
+def folder_content(
+    facts: Mapping[str, Any],
+    plan: pl.DataFrame,
+    rows: pl.DataFrame,
+    reconstructions: pl.DataFrame | None,
+) -> dict[str, bytes]:
+    """The files of a results folder with a single part, by name.
+
+    ``run.json``, without which there is no results folder, comes last.
+    """
+    content = {SINGLE_PART: parquet_content(rows), PLAN: parquet_content(plan)}
+    if reconstructions is not None:
+        content[RECONSTRUCTED] = parquet_content(reconstructions)
+    return {**content, RUN: json_content(facts)}
+
+
+def packed(store: Store) -> bytes:
+    """A results folder with all that it holds as a zip file; the same content gives the same file.
+
+    Raises
+    ------
+    StoreError
+        If the folder cannot be read.
+    """
+    figures = store.reconstructions()
+    found = figures if len(figures) else None
+    content = folder_content(store.run(), store.plan(), store.rows(), found)
+    for cloud in store.cloud_files():
+        content[f"{CLOUDS}/{cloud.name}"] = cloud.read_bytes()
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in content.items():
+            member = zipfile.ZipInfo(name, EARLIEST)
+            member.compress_type = zipfile.ZIP_DEFLATED
+            member.external_attr = 0o644 << 16
+            archive.writestr(member, data)
+    return file.getvalue()
+
+
+def unpack(file: Path) -> Path:
+    """Put a packed results folder into a new temporary folder, which is the caller's to remove.
+
+    Parameters
+    ----------
+    file : path
+        As `packed` made it, or a zip file of a results folder made by hand.
+
+    Raises
+    ------
+    StoreError
+        If it is no such file, is damaged, has a member that would land elsewhere, or there is no
+        room.
+    """
+    folder = Path(tempfile.mkdtemp(prefix="aerocues-packed-"))
+    try:
+        _extract(file, folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    return folder
+
+
+def _extract(file: Path, folder: Path) -> None:
+    try:
+        with zipfile.ZipFile(file) as archive:
+            for name, member in _members(file, archive).items():
+                target = folder / name
+                target.parent.mkdir(exist_ok=True)
+                with archive.open(member) as content, target.open("wb") as copy:
+                    shutil.copyfileobj(content, copy)
+    except BROKEN as error:
+        raise StoreError(
+            f"{file} is no results folder and no packed one ({error}); give a results folder, pack "
+            "it again, or read a table with 'aerocues import'"
+        ) from error
+    except OSError as error:
+        raise StoreError(
+            f"cannot unpack {file}: {error.strerror or error}; make room or access, or unzip it "
+            "and name the folder"
+        ) from error
+
+
+def _members(file: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
+    """The files of the results folder in an archive, by name; others are passed over."""
+    paths = {PurePosixPath(member.filename): member for member in archive.infolist()}
+    for path in paths:
+        if path.is_absolute() or ".." in path.parts:
+            raise StoreError(f"{file} would write to {path}, outside; do not use it")
+    # Made by hand, the folder itself is often in it.
+    tops = [path.parent for path in paths if path.name == RUN and len(path.parts) <= 2]
+    if len(tops) != 1:
+        what = f"several files {RUN}" if tops else f"no {RUN}"
+        raise StoreError(f"{file} is no packed results folder ({what}); pack one anew")
+    inner = {
+        str(path.relative_to(tops[0])): member
+        for path, member in paths.items()
+        if path.is_relative_to(tops[0])
+    }
+    if PLAN not in inner:
+        raise StoreError(f"{file} is no packed results folder (no {PLAN}); pack it again")
+    return {name: member for name, member in inner.items() if MEMBER.fullmatch(name)}

@@ -1,0 +1,50 @@
+"""The table of the rows that a results folder is to hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aerocues.results.schema import IDENTITY
+
+if TYPE_CHECKING:
+    import polars as pl
+
+PAIR = ("image_1", "image_2")
+METHODS = ("detector", "descriptor", "norm", "matcher")
+IDENTITY_NAMES = tuple(column.name for column in IDENTITY)
+TIMED_ALONE = "timed_alone"
+
+
+def with_all_columns(plan: pl.DataFrame) -> pl.DataFrame:
+    """A plan as it is now; older ones do not say what is to be timed by itself."""
+    import polars as pl
+
+    if TIMED_ALONE in plan.columns:
+        return plan
+    return plan.with_columns(pl.lit(value=False).alias(TIMED_ALONE))
+
+
+def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """Add a run's plan to what the folder holds.
+
+    Rows of the same dataset stay where it is read in the same way under the same settings, so that
+    a folder can be filled sequence by sequence or method by method; else the new ones replace them.
+    """
+    import polars as pl
+
+    if not len(new):
+        return old
+    first = new.row(0, named=True)
+    same = pl.col("dataset") == first["dataset"]
+    continued = (pl.col("settings_key") == first["settings_key"]) & (
+        pl.col("dataset_key") == first["dataset_key"]
+    )
+    others = old.filter(~same)
+    kept = old.filter(same & continued).join(new, on=[*PAIR, *METHODS], how="anti")
+    numbers = new.select(*PAIR, "pair", "sequence").unique(PAIR)
+    renumbered = (
+        kept.join(numbers, on=PAIR, how="left", suffix="_new")
+        .with_columns(pl.coalesce(f"{name}_new", name).alias(name) for name in ("pair", "sequence"))
+        .select(new.columns)
+    )
+    return pl.concat([others.select(new.columns), renumbered, new])

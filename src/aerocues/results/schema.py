@@ -1,0 +1,215 @@
+"""The columns of a results table: one row each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from aerocues.results.metrics import METRICS, Row
+
+ColumnType = Literal["string", "integer", "float"]
+PIXEL_THRESHOLDS = (1, 3, 5)
+ANGLE_THRESHOLDS = (5, 10, 20)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its name, type, unit and definition."""
+
+    name: str
+    type: ColumnType
+    unit: str
+    definition: str
+
+
+def _text(name: str, definition: str) -> Column:
+    return Column(name, "string", "", definition)
+
+
+def _count(name: str, definition: str) -> Column:
+    return Column(name, "integer", "count", definition)
+
+
+def _seconds(name: str, what: str) -> tuple[Column, Column]:
+    return (
+        Column(name, "float", "s", f"wall seconds to {what}"),
+        Column(f"{name}_cpu", "float", "s", f"CPU seconds to {what}"),
+    )
+
+
+IDENTITY: tuple[Column, ...] = (
+    _text("dataset", "name of the dataset"),
+    _text("sequence", "scene, sequence, project or kind of transformation"),
+    Column("pair", "integer", "", "0-based position of the pair in the dataset"),
+    _text("image_1", "first image"),
+    _text("image_2", "second image"),
+    _text("detector", "detector"),
+    _text("descriptor", "descriptor"),
+    _text("norm", "norm under which descriptors are compared"),
+    _text("matcher", "matcher"),
+)
+
+OUTCOME: tuple[Column, ...] = (
+    _text("status", "how the evaluation ended"),
+    _text("message", "the message of an error, or what is unusual"),
+)
+
+COUNTS: tuple[Column, ...] = (
+    _count("keypoints_1", "keypoints of image 1 with a descriptor; without any, those detected"),
+    _count("keypoints_2", "keypoints of image 2 with a descriptor; without any, those detected"),
+    _count("matches", "mutual matches"),
+    _count("inliers", "matches that agree with the model: the fundamental matrix, see sampling"),
+    Column("chance_inliers", "float", "count", "mean inliers over the shuffled matches"),
+    _count("chance_inliers_max", "largest number of inliers over the shuffled matches"),
+    _text(
+        "sampling",
+        "how the model was found: uniform; guided (by distance) where that found none better than "
+        "chance; homography where only that did (homography data; its inliers are then counted)",
+    ),
+    _count("homography_inliers", "matches that agree with the homography (homography data)"),
+)
+
+TIMES: tuple[Column, ...] = (
+    *_seconds("detect_seconds_1", "detect in image 1"),
+    *_seconds("detect_seconds_2", "detect in image 2"),
+    *_seconds("describe_seconds_1", "describe image 1"),
+    *_seconds("describe_seconds_2", "describe image 2"),
+    *_seconds("match_seconds", "match, with the building of indices, in both directions"),
+    *_seconds("verify_seconds", "estimate the fundamental matrix"),
+)
+
+HOW_TIMED: tuple[Column, ...] = (
+    _count("timing_repeats", "calls behind the median of a stage, at least (exclusive timing)"),
+    Column(
+        "timing_spread",
+        "float",
+        "ratio",
+        "largest (slowest - fastest) / median of the calls of a stage, for those of a millisecond "
+        "or more (exclusive timing)",
+    ),
+    Column(
+        "wall_over_cpu",
+        "float",
+        "ratio",
+        "largest wall / CPU seconds of a stage of a millisecond or more; above 1.1 it had to share "
+        "its core, in every attempt (exclusive timing)",
+    ),
+)
+
+RESOURCES: tuple[Column, ...] = (
+    Column("descriptor_bytes", "integer", "B", "bytes of one descriptor"),
+    Column(
+        "peak_memory_mb",
+        "float",
+        "MB",
+        "largest rise of the resident set in one stage call (exclusive timing on Linux)",
+    ),
+)
+
+GROUND_TRUTH: tuple[Column, ...] = (
+    *(
+        Column(
+            f"gt_precision@{t}",
+            "float",
+            "ratio",
+            f"share of matches with a true error up to {t} px",
+        )
+        for t in PIXEL_THRESHOLDS
+    ),
+    *(
+        Column(
+            f"gt_matching_score@{t}",
+            "float",
+            "ratio",
+            f"matches with a true error up to {t} px / keypoints_1",
+        )
+        for t in PIXEL_THRESHOLDS
+    ),
+    Column(
+        "gt_repeatability",
+        "float",
+        "ratio",
+        "share of covisible keypoints found again within 3 px, one to one",
+    ),
+    Column(
+        "homography_error",
+        "float",
+        "px",
+        "mean corner error of the estimated homography; infinite where there is none",
+    ),
+    *(
+        Column(
+            f"homography_auc@{t}",
+            "float",
+            "ratio",
+            f"area under the cumulative curve of homography_error up to {t} px",
+        )
+        for t in PIXEL_THRESHOLDS
+    ),
+    Column(
+        "pose_error",
+        "float",
+        "degrees",
+        "larger of the angles between estimated and true rotation and direction of the shift; "
+        "infinite where there is no estimate",
+    ),
+    *(
+        Column(
+            f"pose_auc@{a}",
+            "float",
+            "ratio",
+            f"area under the cumulative curve of pose_error up to {a} degrees",
+        )
+        for a in ANGLE_THRESHOLDS
+    ),
+)
+
+PROVENANCE: tuple[Column, ...] = (
+    _text("preset", "preset of parameters and protocol"),
+    _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
+    _count("max_keypoints", "keypoints of an image that were kept at most; 0: all"),
+    _text("keypoint_choice", "which were kept: strongest, or spread over the image"),
+    Column("inlier_threshold", "float", "px", "inlier threshold of the verification"),
+    _text("opencv_version", "version of OpenCV"),
+    _text("machine", "processor that measured"),
+    Column("seed", "integer", "", "seed set before every stage call"),
+    _text(
+        "timing",
+        "exclusive: a core of its own; scaled: as measured beside others, times what a core of its "
+        "own makes of that for the combination; shared: several workers at once; estimated: "
+        "shared, with brute force timed on a part of the descriptors",
+    ),
+    Column("measured_at", "float", "s", "when the row was measured, in seconds since 1970 (UTC)"),
+    _text("settings_key", "hash of preset, protocol and versions: equal within one table"),
+    _text("row_key", "hash of everything that decides the row"),
+)
+
+DERIVED: tuple[Column, ...] = tuple(
+    Column(metric.name, "float", metric.unit, metric.definition) for metric in METRICS
+)
+
+COLUMNS: tuple[Column, ...] = (
+    *IDENTITY,
+    *OUTCOME,
+    *COUNTS,
+    *DERIVED,
+    *GROUND_TRUTH,
+    *TIMES,
+    *HOW_TIMED,
+    *RESOURCES,
+    *PROVENANCE,
+)
+
+
+def empty_row() -> Row:
+    """A row with every column, all unknown."""
+    return {column.name: None for column in COLUMNS}
+
+
+def polars_schema(columns: Sequence[Column] = COLUMNS) -> dict[str, Any]:
+    """Columns with their polars types."""
+    import polars as pl
+
+    types = {"string": pl.String, "integer": pl.Int64, "float": pl.Float64}
+    return {column.name: types[column.type]() for column in columns}

@@ -1,0 +1,210 @@
+"""A results folder: parts with the measured rows, the plan of all rows, and run.json."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aerocues.errors import StoreError
+from aerocues.results.best_rows import best_rows
+from aerocues.results.folder_lock import LOCK, folder_lock
+from aerocues.results.hashing import content_hash
+from aerocues.results.metrics import Row
+from aerocues.results.plan_table import merge_plans, with_all_columns
+from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
+from aerocues.results.row_files import RowFiles
+from aerocues.results.schema import polars_schema
+from aerocues.results.statuses import RETRIED
+from aerocues.results.timing import TIMINGS, Timing
+from aerocues.results.whole_files import json_content, parquet_content
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+PARTS = "parts"
+RUN = "run.json"
+RACE = "race.json"
+PLAN = "plan.parquet"
+OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
+LONGEST_LIST = 12
+
+
+class Store(ReconstructionStore):
+    """Results in a folder. A part is written beside and renamed: there is never half a file."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._parts = folder / PARTS
+        self._row_files = RowFiles(self._parts)
+
+    @classmethod
+    def create(cls, folder: Path) -> Store:
+        """Open a results folder for writing, made where it is missing.
+
+        Raises
+        ------
+        StoreError
+            If the folder cannot be made or written, or is something else.
+        """
+        if folder.exists() and not folder.is_dir():
+            raise StoreError(f"{folder} is a file; give -o the name of a folder")
+        if folder.is_dir() and not (folder / RUN).exists() and any(folder.iterdir()):
+            left_over = [path for path in folder.iterdir() if path.name not in OWN]
+            if left_over:
+                raise StoreError(
+                    f"{folder} holds other files ({left_over[0].name}, ...); give -o a new or "
+                    "empty folder"
+                )
+        store = cls(folder)
+        try:
+            store._parts.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=store._parts):
+                pass
+        except OSError as error:
+            raise StoreError(
+                f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+            ) from error
+        return store
+
+    @contextlib.contextmanager
+    def writing(self) -> Iterator[None]:
+        """Keep other runs out of the folder, and take away what an interrupted one left half done.
+
+        Raises
+        ------
+        StoreError
+            If another process is writing to the folder.
+        """
+        with folder_lock(self.folder):
+            self._remove_leftovers()
+            self._row_files.put_together()
+            yield
+            self._row_files.put_together()
+
+    @classmethod
+    def open(cls, folder: Path) -> Store:
+        """Open an existing results folder for reading; StoreError where there is none."""
+        if not (folder / RUN).is_file():
+            inner = sorted(run.parent.name for run in folder.glob(f"*/{RUN}"))
+            if inner:
+                more = f" and {len(inner) - LONGEST_LIST} more" if inner[LONGEST_LIST:] else ""
+                raise StoreError(
+                    f"{folder} is a folder of results folders; name one of them, such as "
+                    f"{folder / inner[0]}: {', '.join(inner[:LONGEST_LIST])}{more}"
+                )
+            raise StoreError(
+                f"{folder} is no results folder (it has no {RUN}); make one with "
+                f"'aerocues run DATASET -o {folder}'"
+            )
+        return cls(folder)
+
+    def _remove_leftovers(self) -> None:
+        beside = (self._parts, self.folder, self.folder / CLOUDS)
+        for path in [path for folder in beside for path in folder.glob("*.tmp")]:
+            path.unlink(missing_ok=True)
+
+    def write_rows(self, name: str, rows: Sequence[Row]) -> None:
+        """Store the rows of a finished part of a unit, all or none.
+
+        Raises
+        ------
+        StoreError
+            If the disk is full or the folder cannot be written any more.
+        """
+        import polars as pl
+
+        table = pl.DataFrame(rows, schema=polars_schema(), orient="row")
+        self._row_files.write(name, table)
+
+    def write_finished(self, detector: str, rows: Sequence[Row]) -> None:
+        """Store the rows of one detector that an engine finished; see `write_rows`.
+
+        The same measurements with other timings are another part.
+        """
+        content = [[row["row_key"], row["timing"]] for row in rows]
+        self.write_rows(f"{detector}-{content_hash(content)}", rows)
+
+    def write_run(self, facts: Mapping[str, Any]) -> None:
+        """Store the configuration, the versions and the machine of the latest run."""
+        self._write(self.folder / RUN, json_content(facts))
+
+    def write_plan(self, rows: pl.DataFrame) -> None:
+        """Add the planned rows of a run; see `planned_rows.merge_plans`."""
+        new = with_all_columns(rows)
+        old = self.plan() if (self.folder / PLAN).is_file() else new.clear()
+        self._write(self.folder / PLAN, parquet_content(merge_plans(old, new)))
+
+    def plan(self) -> pl.DataFrame:
+        """All planned rows, under whatever settings."""
+        import polars as pl
+
+        if not (self.folder / PLAN).is_file():
+            raise StoreError(
+                f"{self.folder / PLAN} is missing; run the same 'aerocues run' command again to "
+                "restore it"
+            )
+        return with_all_columns(self._collect(pl.scan_parquet(self.folder / PLAN)))
+
+    def planned(self) -> pl.DataFrame:
+        """The rows that the folder is to hold, under the settings of the latest run."""
+        import polars as pl
+
+        return self.plan().filter(pl.col("settings_key") == self.run().get("settings_key"))
+
+    def planned_keys(self) -> frozenset[str]:
+        """Keys of the rows that the folder is to hold; none where nothing tells."""
+        try:
+            return frozenset(self.planned()["row_key"].to_list())
+        except StoreError:
+            return frozenset()  # a new folder, or a record that the next run restores
+
+    def measured(self, keys: frozenset[str]) -> frozenset[str]:
+        """Those of some rows that were measured."""
+        return keys & frozenset(self._row_files.read(("row_key",))["row_key"]) if keys else keys
+
+    def run(self) -> dict[str, Any]:
+        """What `write_run` stored last."""
+        try:
+            content = json.loads((self.folder / RUN).read_text(encoding="utf-8"))
+        except (OSError, json.JSONDecodeError) as error:
+            raise StoreError(
+                f"cannot read {self.folder / RUN}: {error}; run the same 'aerocues run' command "
+                "again to restore it"
+            ) from error
+        if not isinstance(content, dict):
+            raise StoreError(f"{self.folder / RUN} is damaged; run the same command again")
+        return content
+
+    def parts(self) -> list[Path]:
+        """The files with finished rows."""
+        return self._row_files.files()
+
+    def present(self, timing: Timing, *, retry_failed: bool) -> frozenset[str]:
+        """Keys of the rows that need not be measured again.
+
+        Rows with worse times do not serve where better ones are asked for, unless they failed; the
+        converse does.
+        """
+        import polars as pl
+
+        rows = self._row_files.read(("row_key", "status", "timing"))
+        good_enough = TIMINGS[TIMINGS.index(timing) :]
+        failed = pl.col("status").is_in(RETRIED)
+        rows = rows.filter(failed | pl.col("timing").is_in(good_enough))
+        if retry_failed:
+            rows = rows.filter(~failed)
+        return frozenset(rows["row_key"].to_list())
+
+    def table(self) -> pl.DataFrame:
+        """The measured ones among the planned rows, each once, in order; see `best_rows`."""
+        rows = self.rows()
+        return best_rows(self.planned(), rows) if len(rows) else rows
+
+    def rows(self) -> pl.DataFrame:
+        """Every stored row as it was written, planned or not, also the same one twice."""
+        return self._row_files.read()

@@ -1,0 +1,220 @@
+"""Tables that others made, from CSV or Parquet into our columns; what does not fit is named."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aerocues.errors import StoreError
+from aerocues.methods.combination import METHOD_NAME
+from aerocues.results.plan_table import METHODS
+from aerocues.results.schema import Column, polars_schema
+
+if TYPE_CHECKING:
+    import polars as pl
+
+PARQUET_MARK = b"PAR1"
+# How programs write that there is no number.
+NO_NUMBER = ("", "NA", "N/A", "NaN", "nan", "null", "None", "-")
+MAY_BE_NEGATIVE = ("seed",)
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """A file with a table: its name, the hash of its content, and its columns as they are."""
+
+    name: str
+    sha256: str
+    frame: pl.DataFrame
+
+    def wrong(self, what: str) -> StoreError:
+        """An error that names the file."""
+        return StoreError(f"{self.name} {what}")
+
+
+def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
+    """Read a table; all columns of a CSV file are text.
+
+    Parameters
+    ----------
+    file : path
+    other_names : mapping of str to str
+        Names that a column may also have, and what it is called here.
+
+    Raises
+    ------
+    StoreError
+        If it cannot be read, is neither CSV nor Parquet, is damaged or has no row.
+    """
+    import polars as pl
+
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        raise StoreError(
+            f"cannot read {file}: {error.strerror or error}; give a .csv or .parquet file"
+        ) from error
+    is_parquet = content.startswith(PARQUET_MARK)
+    if not is_parquet and file.suffix.lower() != ".csv":
+        damaged = " (it is no Parquet file inside)" if file.suffix.lower() == ".parquet" else ""
+        raise StoreError(f"{file} is neither CSV nor Parquet{damaged}; give one of these")
+    try:
+        if is_parquet:
+            frame = pl.read_parquet(io.BytesIO(content))
+        else:
+            frame = pl.read_csv(io.BytesIO(content), infer_schema=False)
+    except (pl.exceptions.PolarsError, OSError) as error:
+        form = "Parquet" if is_parquet else "CSV"
+        raise StoreError(f"{file} cannot be read as {form}: {_reason(error)}") from error
+    frame = frame.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines
+    if frame.is_empty():
+        raise StoreError(f"{file} has no row; give a table with one at least")
+    table = TableFile(file.name, hashlib.sha256(content).hexdigest(), frame)
+    names = [other_names.get(name.strip(), name.strip()) for name in frame.columns]
+    for given, name in zip(frame.columns, names, strict=True):
+        if names.count(name) > 1:
+            raise table.wrong(f"has the column {name} twice (as {given}); keep one")
+    return replace(table, frame=frame.rename(dict(zip(frame.columns, names, strict=True))))
+
+
+def _reason(error: Exception) -> str:
+    """What is wrong and what to do; the rest of such messages is about polars."""
+    text = " ".join(str(error).split())
+    if "utf-8" in text.lower():
+        return "it is not UTF-8; save it as UTF-8"
+    what = text.split("Consider", maxsplit=1)[0].strip(" .:;")[:120]
+    return f"{what}; check that all its lines have the same columns, and write it again"
+
+
+def in_columns(
+    table: TableFile, columns: Sequence[Column], required: Collection[str]
+) -> pl.DataFrame:
+    """The table with exactly these columns, of their types; NaN and blanks become null.
+
+    Raises
+    ------
+    StoreError
+        If a required column is missing, one is not known, or a value does not fit its column.
+    """
+    import polars as pl
+
+    _check_names(table, columns, required)
+    types = polars_schema(columns)
+    return pl.DataFrame(
+        [
+            _converted(table, column)
+            if column.name in table.frame.columns
+            else pl.repeat(None, len(table.frame), dtype=types[column.name], eager=True).alias(
+                column.name
+            )
+            for column in columns
+        ]
+    )
+
+
+def _check_names(table: TableFile, columns: Sequence[Column], required: Collection[str]) -> None:
+    found = table.frame.columns
+    known = {column.name for column in columns}
+    unknown = [name for name in found if name not in known]
+    missing = [name for name in required if name not in found]
+    faults = []
+    if unknown:
+        faults.append(f"has columns that are not known: {', '.join(unknown)}")
+    if missing:
+        faults.append(f"lacks the columns {', '.join(missing)}")
+    if len(found) == 1 and {";", "\t"} & set(found[0]):
+        raise table.wrong("has one column only; write it with commas between the columns")
+    if faults:
+        raise table.wrong(f"{' and '.join(faults)}; rename, remove or add them")
+
+
+def _converted(table: TableFile, column: Column) -> pl.Series:
+    import polars as pl
+
+    values = table.frame[column.name]
+    if values.dtype.is_nested() or values.dtype in (pl.Binary, pl.Object):
+        raise table.wrong(f"holds {values.dtype} in the column {column.name}; give plain values")
+    if column.type == "string":
+        text = values.cast(pl.String).str.strip_chars()
+        return text.set(text == "", None)
+    numbers = _numbers(table, values)
+    if column.name not in MAY_BE_NEGATIVE:
+        _refuse(table, values, numbers < 0, "is negative")
+    if column.type == "float":
+        return numbers
+    _refuse(
+        table, values, ~numbers.is_finite() | (numbers != numbers.round()), "is no whole number"
+    )
+    return numbers.cast(pl.Int64)
+
+
+def _numbers(table: TableFile, values: pl.Series) -> pl.Series:
+    """The values as float64, null where there is none."""
+    import polars as pl
+
+    if values.dtype in (pl.String, pl.Categorical, pl.Enum):
+        text = values.cast(pl.String).str.strip_chars()
+        given = text.set(text.is_in(NO_NUMBER), None)
+        numbers = given.cast(pl.Float64, strict=False)
+        _refuse(table, values, given.is_not_null() & numbers.is_null(), "is no number")
+    elif values.dtype.is_numeric() or values.dtype == pl.Null:
+        numbers = values.cast(pl.Float64)
+    else:
+        raise table.wrong(f"holds {values.dtype} in the column {values.name}; give numbers")
+    return numbers.fill_nan(None)
+
+
+def _refuse(table: TableFile, values: pl.Series, wrong: pl.Series, what: str) -> None:
+    """Name the first value that is wrong."""
+    row = first_row(wrong)
+    if row is not None:
+        value = values.item(row - 1)
+        raise table.wrong(f"has {value!r} as {values.name} in row {row}, which {what}; correct it")
+
+
+def first_row(wrong: pl.Series) -> int | None:
+    """The number of the first row that is wrong, from 1, the heading not counted."""
+    positions = wrong.arg_true()
+    return int(positions.item(0)) + 1 if len(positions) else None
+
+
+def named_methods(table: TableFile, rows: pl.DataFrame) -> pl.DataFrame:
+    """The rows with the names of methods in capitals; all that name a row must be there.
+
+    Raises
+    ------
+    StoreError
+        If a row has no dataset or method, or a method's name could not be part of a combination.
+    """
+    import polars as pl
+
+    for name in ("dataset", *METHODS):
+        row = first_row(rows[name].is_null())
+        if row is not None:
+            raise table.wrong(f"has no {name} in row {row}; fill it in")
+    rows = rows.with_columns(pl.col(METHODS).str.to_uppercase())
+    for name in METHODS:
+        for method in rows[name].unique(maintain_order=True):
+            if not METHOD_NAME.fullmatch(method):
+                raise table.wrong(
+                    f"has the {name} {method!r}; names consist of letters, digits and _: rename it"
+                )
+    return rows
+
+
+def refuse_twice(table: TableFile, rows: pl.DataFrame, names: Sequence[str]) -> None:
+    """Name the first two rows that are about the same thing; StoreError if there are any."""
+    twice = rows.select(names).is_duplicated()
+    if not twice.any():
+        return
+    first = rows.select(names).filter(twice).row(0)
+    same = rows.select(names).with_row_index("row", 1).filter(twice)
+    numbers = [row[0] for row in same.iter_rows() if row[1:] == first][:2]
+    told = ", ".join(
+        f"{name} {value}" for name, value in zip(names, first, strict=True) if value is not None
+    )
+    raise table.wrong(f"has rows {numbers[0]} and {numbers[1]} about the same ({told}); keep one")

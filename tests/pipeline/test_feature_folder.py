@@ -1,0 +1,164 @@
+"""Features on disk serve later runs, and only where nothing that decides them has changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import StoreError
+from aerocues.evaluation.run import run
+from aerocues.methods.arrays import Features, Keypoints
+from aerocues.methods.presets import Preset
+from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline import feature_folder
+from aerocues.pipeline.clock import StageTime
+from aerocues.pipeline.feature_folder import FeatureFolder, checked_folder
+from aerocues.pipeline.features import Described, FeatureExtractor
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import assert_same_rows, rows_of
+
+FEW = "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-FLANN,AKAZE-SIFT-L2-BF,AKAZE-AKAZE-HAM-BF"
+
+
+class Count:
+    """Counts images that are detected in and described."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.calls = {"detect": 0, "describe": 0}
+        for name in self.calls:
+            monkeypatch.setattr(FeatureExtractor, name, self._counted(name))
+
+    def _counted(self, name: str) -> Any:
+        original = getattr(FeatureExtractor, name)
+
+        def count(*arguments: Any) -> Any:
+            self.calls[name] += 1
+            return original(*arguments)
+
+        return count
+
+    def taken(self) -> tuple[int, int]:
+        numbers = (self.calls["detect"], self.calls["describe"])
+        self.calls.update(detect=0, describe=0)
+        return numbers
+
+
+def measure(dataset: Dataset, output: Path, features: Path | None, **options: Any) -> Any:
+    return run(
+        dataset,
+        options.pop("combinations", FEW),
+        output,
+        features=features,
+        engine=InlineEngine(),
+        **({"timing": "shared"} | options),
+    ).table()
+
+
+def test_another_run_finds_what_one_kept(
+    views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count, kept = Count(monkeypatch), tmp_path / "features"
+    without = measure(views, tmp_path / "a", None)
+    assert count.taken() == (8, 16)
+    first = measure(views, tmp_path / "b", kept)
+    assert count.taken() == (8, 16)
+    second = measure(views, tmp_path / "c", kept)
+    assert count.taken() == (0, 0)
+    for table in (first, second):
+        assert_same_rows(rows_of(table), rows_of(without))
+    seconds = [name for name in first.columns if name.startswith(("detect", "describe"))]
+    assert first.select(seconds).equals(second.select(seconds))
+    files = {path.parent.name for path in kept.rglob("*.npz")}
+    assert files == {"ORB", "ORB-ORB", "ORB-BRIEF", "AKAZE", "AKAZE-SIFT", "AKAZE-AKAZE"}
+
+
+@pytest.mark.parametrize(
+    ("options", "taken"),
+    [
+        ({"combinations": "ORB-ORB-HAM-FLANN"}, (0, 0)),
+        ({"preset": Preset("strict", "s", True, thresholds={"ORB-ORB": 1.0})}, (0, 0)),
+        ({"timing": "estimated"}, (0, 0)),
+        ({"timing": "exclusive"}, (8, 16)),
+        ({"seed": 1}, (8, 16)),
+        ({"limit": KeypointLimit(100)}, (8, 16)),
+        ({"preset": Preset("b", "b", True, {}, {"BRIEF": {"bytes": 32}})}, (0, 4)),
+        ({"preset": Preset("o", "o", True, {"ORB": {"nlevels": 3}})}, (4, 8)),
+    ],
+)
+def test_what_decides_features_is_part_of_their_name(
+    views: Dataset,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    options: dict[str, Any],
+    taken: tuple[int, int],
+) -> None:
+    count, kept = Count(monkeypatch), tmp_path / "features"
+    measure(views, tmp_path / "a", kept)
+    count.taken()
+    measure(views, tmp_path / "b", kept, **options)
+    assert count.taken() == taken
+
+
+def test_damaged_files_are_made_again(
+    views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = tmp_path / "features"
+    before = measure(views, tmp_path / "a", kept)
+    for number, file in enumerate(sorted(kept.rglob("*.npz"))):
+        file.write_bytes(file.read_bytes()[: 40 * (number % 3)])
+    count = Count(monkeypatch)
+    after = measure(views, tmp_path / "b", kept)
+    assert count.taken() == (8, 16)
+    assert_same_rows(rows_of(after), rows_of(before))
+
+
+def test_a_full_disk_costs_only_what_would_have_been_kept(
+    views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(feature_folder, "write_arrays", full)
+    table = measure(views, tmp_path / "a", tmp_path / "features")
+    assert set(table["status"]) == {"ok"}
+    told = f"features are kept no longer in {tmp_path / 'features'}: No space left on device"
+    assert set(table["message"]) == {told}
+
+
+def test_a_folder_that_cannot_be_made_is_told_before_anything_is_measured(
+    views: Dataset, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="it is a file; give --features a folder"):
+        measure(views, tmp_path / "r", tmp_path / "file")
+    with pytest.raises(StoreError, match="choose another folder with --features"):
+        measure(views, tmp_path / "r", tmp_path / "file" / "features")
+    assert not (tmp_path / "r").exists()
+
+
+def test_times_come_back_as_they_were(views: Dataset, tmp_path: Path) -> None:
+    from tests.evaluation.test_plan import context_of
+
+    context = context_of(views)
+    place = checked_folder(tmp_path)
+    folder = FeatureFolder(place, context.methods, context.protocol, context.machine)
+    image = views.images[0]
+    keypoints = Keypoints.from_xy(np.random.default_rng(0).random((5, 2)))
+    for taken in (StageTime(1.0, 0.5), StageTime(1.0, 0.5, 3.0, 3, 0.1), StageTime(0.0, 0.0, 0.0)):
+        folder.keep_keypoints(image, "ORB", keypoints, taken)
+        found = folder.keypoints(image, "ORB")
+        assert found is not None
+        assert found[1] == taken
+        assert np.array_equal(found[0].xy, keypoints.xy)
+        rows = np.arange(160, dtype=np.uint8).reshape(5, 32)
+        folder.keep_described(image, "ORB", "ORB", Described(Features(keypoints, rows), taken))
+        described = folder.described(image, "ORB", "ORB")
+        assert described is not None
+        assert described.time == taken
+        assert np.array_equal(described.features.descriptors, rows)
+        assert described.features.descriptors.dtype == np.uint8
+    assert folder.described(image, "ORB", "BRIEF") is None
