@@ -23,6 +23,10 @@ class MethodUnavailableError(AerocuesError):
     """A method exists but what it needs (a package, a build option of OpenCV) does not."""
 
 
+class MethodFailedError(AerocuesError):
+    """A method failed on an image or a pair of images."""
+
+
 class StoreError(AerocuesError):
     """A results folder cannot be read or written."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
@@ -70,6 +71,9 @@ def reconstruct(
             "no combinations: name some with --combinations, or results with --from"
         )
     store = open_results(results, scene) if results is not None else None
+    options = options or ReconstructionOptions()
+    if options.features is None:
+        options = replace(options, features=features_of_results(results))
     if combinations is None:
         assert results is not None
         combinations = best_combinations(results, scene.name, top or TOP)
@@ -77,7 +81,7 @@ def reconstruct(
         scene,
         combinations,
         Path(output),
-        options or ReconstructionOptions(),
+        options,
         observer or ReconstructionObserver(),
         store,
     )
@@ -138,6 +142,12 @@ def settings_of_results(results: str | Path | None) -> dict[str, str]:
     read = (Results(results).settings.get("dataset") or {}).get("settings", {})
     wanted = ("max_width", "equalize", "subset")
     return {name: str(read[name]) for name in wanted if read.get(name) is not None}
+
+
+def features_of_results(results: str | Path | None) -> Path | None:
+    """The folder in which a run kept its features, if it is still there."""
+    kept = None if results is None else Results(results).settings.get("features")
+    return Path(kept) if kept and Path(kept).is_dir() else None
 
 
 def preset_of_results(results: str | Path | None) -> Preset:

@@ -280,3 +280,40 @@ def test_a_pair_in_both_orders_is_matched_once(
     twice = replace(landscape, pairs=[*landscape.pairs, *turned])
     row = row_of(aerocues.reconstruct(twice, empty, SIFT, options=quick), SIFT)
     assert (row["status"], row["pairs"]) == ("ok", 36)
+
+
+def test_the_thresholds_of_a_preset_decide_the_model(
+    landscape: Dataset, models: Models, empty: Path, quick: ReconstructionOptions
+) -> None:
+    strict = Preset("strict", "half a pixel", chance_test=True, thresholds={"ORB-ORB": 0.5})
+    options = replace(quick, preset=strict)
+    made = aerocues.reconstruct(landscape, empty, "ORB-ORB-HAM-BF", options=options).table()
+    usual = models.table().filter(pl.col("detector") == "ORB")
+    assert made["matches"].to_list() == usual["matches"].to_list()
+    assert made["verified_matches"][0] < usual["verified_matches"][0]
+    assert made["points_3d"][0] != usual["points_3d"][0]
+    assert made["row_key"][0] != usual["row_key"][0]
+
+
+def test_features_that_a_run_kept_are_used_again(
+    landscape: Dataset, models: Models, empty: Path, tmp_path: Path, quick: ReconstructionOptions
+) -> None:
+    kept = tmp_path / "features"
+    results = aerocues.run(
+        landscape,
+        "ORB-ORB-HAM-BF",
+        tmp_path / "results",
+        limit=KeypointLimit(quick.protocol.max_keypoints),
+        timing="shared",
+        features=kept,
+    )
+    before = {file: file.stat().st_mtime_ns for file in kept.rglob("*.npz")}
+    assert len(before) == 2 * len(landscape.images)
+    made = aerocues.reconstruct(
+        landscape, empty, "ORB-ORB-HAM-BF", results=results.folder, options=quick
+    ).table()
+    assert {file: file.stat().st_mtime_ns for file in kept.rglob("*.npz")} == before
+    usual = models.table().filter(pl.col("detector") == "ORB")
+    for name in ("matches", "registered_images", "points_3d"):
+        assert made[name].to_list() == usual[name].to_list()
+    assert not (empty / "features").exists()

@@ -107,6 +107,12 @@ def reconstruct(
     undistort: Annotated[
         bool, typer.Option("--undistort", help="Write images for a dense step, too.")
     ] = False,
+    features: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Keep features here, and use those there; as in --from by default."
+        ),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
     ] = None,
@@ -154,6 +160,7 @@ def reconstruct(
             undistorted=undistort,
             preset=preset or preset_of_results(results),
             reference=reference,
+            features=features,
             workers=workers,
             time_limit=time_limit,
             memory_limit_mb=None if memory_limit is None else int(memory_limit * MEGABYTES),

@@ -14,7 +14,7 @@ from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
-from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol
+from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.results.hashing import content_hash
 from aerocues.results.timing import Timing
 from aerocues.results.versions import machine_facts, machine_name, software_versions
@@ -38,13 +38,7 @@ def make_context(
     problem = why_not_exact() if timing == "estimated" else None
     if problem:
         raise MethodUnavailableError(f"times cannot be estimated here: {problem}")
-    protocol = MeasurementProtocol(
-        seed=seed,
-        timing=timing,
-        chance=ChanceTest() if preset.chance_test else None,
-        limit=limit,
-        thresholds=preset.thresholds,
-    )
+    protocol = MeasurementProtocol.of_preset(preset, seed=seed, timing=timing, limit=limit)
     versions = software_versions()
     settings_key = content_hash([preset.name, protocol.identity(), versions["opencv"]])
     return Context(
@@ -74,6 +68,7 @@ def run_facts(
         "preset": context.preset,
         "preset_parts": asdict(preset),
         "protocol": asdict(context.protocol),
+        "features": str(context.features) if context.features else None,
         "combinations": [str(combination) for combination in combinations],
         "exclusions": [
             {"combination": str(e.combination), "reason": e.reason, "pairs": e.pairs}

@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import numpy as np
-
-from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context
-from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
-from aerocues.methods.making import MatcherStage, make_matcher
-from aerocues.pipeline.brute_force_time import SampledBruteForce
 from aerocues.pipeline.clock import Clock, StageTime
-from aerocues.pipeline.features import run_stage, warm_up
-from aerocues.pipeline.verification import Verifiers
-from aerocues.processes.call import StageCall
+from aerocues.pipeline.feature_source import Announce
+from aerocues.pipeline.pair_stages import PairStages, matched_points
 from aerocues.results.metrics import Row
-
-BRUTE_FORCE = "BF"
-WARM_UP_FEATURES = 32
-Announce = Callable[[StageCall], None]
 
 
 class TwoViewMeasurement:
-    """Fills the rows of pairs; matchers are made once and kept."""
+    """Fills the rows of pairs."""
 
     def __init__(self, context: Context, clock: Clock, announce: Announce) -> None:
-        self._context = context
-        self._clock = clock
-        self._announce = announce
-        self._matchers: dict[tuple[str, str], MatcherStage] = {}
-        self._verifiers = Verifiers(context.protocol, context.dataset.geometry, clock)
+        self._stages = PairStages(
+            context.methods, context.protocol, context.dataset.geometry, clock, announce
+        )
         self._truth = TruthComparison(context.dataset)
 
     def begin_pair(self) -> None:
@@ -48,71 +33,23 @@ class TwoViewMeasurement:
         row["descriptor_bytes"] = first.descriptors.shape[1] * first.descriptors.itemsize
         if not len(first) or not len(second):
             return "no_descriptors"
-        matches = self._match(row, views, combination)
-        row["matches"] = len(matches)
-        found = Matched(
-            first.keypoints.xy[matches.indices[:, 0]],
-            second.keypoints.xy[matches.indices[:, 1]],
-            np.argsort(matches.distance, kind="stable"),
-        )
-        status = self._verify(row, views, combination, found)
-        self._truth.compare(row, views, found, self._verifiers.of(combination))
-        return status
-
-    def _match(self, row: Row, views: TwoViews, combination: Combination) -> Matches:
-        self._announce(_call("match", views.pair, combination))
-        what = f"{combination} matching {views.pair.image_1} and {views.pair.image_2}"
-        kind = (combination.matcher, combination.norm)
-        first, second = (described.features for described in views.described)
-        if kind not in self._matchers:
-            made = run_stage(what, lambda: make_matcher(self._context.methods, *kind))
-            self._matchers[kind] = made
-            few = [_first_ones(features) for features in (first, second)]
-            warm_up(lambda: made.call(*few))
-        matcher = self._matchers[kind]
-        if combination.matcher == BRUTE_FORCE and self._context.protocol.timing == "estimated":
-            sampled = SampledBruteForce(matcher, combination.norm, self._clock)
-            matches, time = run_stage(what, lambda: sampled.match(first, second))
-            record_time(row, "match_seconds", time)
-            return matches
-        raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
+        names, number = f"{views.pair.image_1} and {views.pair.image_2}", views.pair.index
+        matches, time = self._stages.match(combination, (first, second), names, number)
         record_time(row, "match_seconds", time)
-        return run_stage(what, lambda: matcher.read(raw))
-
-    def _verify(self, row: Row, views: TwoViews, combination: Combination, found: Matched) -> str:
-        if len(found.points_1) < self._context.protocol.verification.minimum_matches:
-            return "too_few_matches"
-        self._announce(_call("verify", views.pair, combination))
-        what = f"verifying {combination} on {views.pair.image_1} and {views.pair.image_2}"
-        verifier = self._verifiers.of(combination)
-        verdict = run_stage(
-            what, lambda: verifier.verify(found.points_1, found.points_2, found.order)
-        )
-        record_time(row, "verify_seconds", verdict.time)
-        row["inliers"] = verdict.model.count
-        row["sampling"] = verdict.sampling
-        row["chance_inliers"] = verdict.chance_mean
-        row["chance_inliers_max"] = verdict.chance_max
-        if verdict.model.matrix is None:
-            return "no_model"
-        return "ok" if verdict.passed else "chance"
-
-
-def _first_ones(features: Features) -> Features:
-    kept = np.arange(min(len(features), WARM_UP_FEATURES))
-    return Features(features.keypoints.take(kept), features.descriptors[kept])
-
-
-def _call(stage: str, pair: Pair, combination: Combination) -> StageCall:
-    images = f"{pair.image_1} and {pair.image_2}"
-    return StageCall(
-        stage,
-        pair.index,
-        images,
-        combination.detector,
-        combination.descriptor,
-        str(combination),
-    )
+        row["matches"] = len(matches)
+        points, order = matched_points(first, second, matches)
+        verdict = self._stages.verify(combination, points, order, names, number)
+        status = "too_few_matches"
+        if verdict is not None:
+            record_time(row, "verify_seconds", verdict.time)
+            row["inliers"] = verdict.model.count
+            row["sampling"] = verdict.sampling
+            row["chance_inliers"] = verdict.chance_mean
+            row["chance_inliers_max"] = verdict.chance_max
+            status = verdict.status
+        found = Matched(*points, order)
+        self._truth.compare(row, views, found, self._stages.verifier(combination))
+        return status
 
 
 def record_time(row: Row, name: str, time: StageTime) -> None:

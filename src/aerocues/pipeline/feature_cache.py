@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 
-from aerocues.pipeline.features import ImageFeatures, StageError
+from aerocues.pipeline.features import Failure, ImageFeatures
 
 CACHE_BYTES = 256 * 2**20
 Key = tuple[str, str]
@@ -22,16 +22,16 @@ class FeatureCache:
 
     def __init__(self, most: int = CACHE_BYTES) -> None:
         self._most = most
-        self._kept: OrderedDict[Key, ImageFeatures | StageError] = OrderedDict()
+        self._kept: OrderedDict[Key, ImageFeatures | Failure] = OrderedDict()
 
-    def get(self, key: Key) -> ImageFeatures | StageError | None:
+    def get(self, key: Key) -> ImageFeatures | Failure | None:
         """What is kept of an image under a detector; it counts as used last."""
         found = self._kept.get(key)
         if found is not None:
             self._kept.move_to_end(key)
         return found
 
-    def put(self, key: Key, features: ImageFeatures | StageError) -> None:
+    def put(self, key: Key, features: ImageFeatures | Failure) -> None:
         self._kept[key] = features
 
     def trim(self, needed: frozenset[Key]) -> None:
@@ -42,15 +42,15 @@ class FeatureCache:
         sizes = {key: _bytes(features) for key, features in self._kept.items()}
         total = sum(sizes.values())
         for key in [key for key in self._kept if key not in needed]:
-            if total > self._most or isinstance(self._kept[key], StageError):
+            if total > self._most or isinstance(self._kept[key], Failure):
                 del self._kept[key]
                 total -= sizes[key]
 
 
-def _bytes(features: ImageFeatures | StageError) -> int:
-    if isinstance(features, StageError):
+def _bytes(features: ImageFeatures | Failure) -> int:
+    if isinstance(features, Failure):
         return 0
-    described = [each for each in features.described.values() if not isinstance(each, StageError)]
+    described = [each for each in features.described.values() if not isinstance(each, Failure)]
     # What OpenCV makes of keypoints is about as large as they are; 200 bytes each.
     return (
         features.pixels.bgr.nbytes

@@ -32,6 +32,32 @@ class StageError(Exception):
         self.message = message
 
 
+@dataclass(frozen=True)
+class Failure:
+    """What is kept of a `StageError`: the traceback of an exception would hold all its memory.
+
+    Parameters
+    ----------
+    status : str
+    message : str or None
+    """
+
+    status: str
+    message: str | None
+
+    @classmethod
+    def of(cls, error: StageError) -> Failure:
+        """The part of an error that rows need."""
+        return cls(error.status, error.message)
+
+
+def unless_failed(found: Result | Failure) -> Result:
+    """What was found; StageError where it is a failure."""
+    if isinstance(found, Failure):
+        raise StageError(found.status, found.message)
+    return found
+
+
 def run_stage(what: str, call: Callable[[], Result]) -> Result:
     """Call a method and turn whatever it raises into a StageError that names it."""
     try:
@@ -73,10 +99,11 @@ class Described:
 class ImageFeatures:
     """One image under one detector: pixels, keypoints and what descriptors made of them."""
 
+    image: Image
     pixels: Pixels
     keypoints: Keypoints
     detect_time: StageTime
-    described: dict[str, Described | StageError] = field(default_factory=dict)
+    described: dict[str, Described | Failure] = field(default_factory=dict)
     prepared: dict[type, Any] = field(default_factory=dict)
 
 
@@ -117,11 +144,11 @@ class FeatureExtractor:
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
         kept = self._limit.keep(_on_valid_pixels(found, pixels.valid), self._seed)
-        return ImageFeatures(pixels, kept, time)
+        return ImageFeatures(image, pixels, kept, time)
 
     def read(self, image: Image, keypoints: Keypoints, detect_time: StageTime) -> ImageFeatures:
         """An image with keypoints that were detected before; StageError if it cannot be read."""
-        return ImageFeatures(self._pixels(image), keypoints, detect_time)
+        return ImageFeatures(image, self._pixels(image), keypoints, detect_time)
 
     def _pixels(self, image: Image) -> Pixels:
         pixels = run_stage(f"reading {image.name}", image.read)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 from aerocues.methods.combination import Combination
+from aerocues.methods.presets import Preset
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.results.timing import Timing
 
@@ -74,10 +75,27 @@ class MeasurementProtocol:
     limit: KeypointLimit = ALL_KEYPOINTS
     thresholds: Mapping[str, float] = field(default_factory=dict)
 
+    @classmethod
+    def of_preset(
+        cls,
+        preset: Preset,
+        *,
+        seed: int = 0,
+        timing: Timing = "shared",
+        limit: KeypointLimit = ALL_KEYPOINTS,
+    ) -> MeasurementProtocol:
+        """The protocol that a preset asks for."""
+        chance = ChanceTest() if preset.chance_test else None
+        return cls(seed, timing, Verification(), chance, limit, preset.thresholds)
+
     def threshold(self, combination: Combination) -> float:
         """The inlier threshold of a combination, in pixels."""
         both = f"{combination.detector}-{combination.descriptor}"
         return self.thresholds.get(both, self.verification.threshold)
+
+    def with_threshold(self, threshold: float) -> MeasurementProtocol:
+        """The same with another inlier threshold, in pixels."""
+        return replace(self, verification=replace(self.verification, threshold=threshold))
 
     def identity(self) -> dict[str, object]:
         """What decides the quality columns of all combinations: everything but the timing.

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Geometry
 from aerocues.methods.arrays import Float32Array
-from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.protocol import MeasurementProtocol, Verification
 
@@ -125,6 +124,19 @@ class Verdict:
     chance_max: int | None
     passed: bool
     time: StageTime
+
+    @classmethod
+    def too_few(cls, matches: int) -> Verdict:
+        """The outcome where there are too few matches to look for a model."""
+        nothing = Model(None, np.zeros(matches, bool))
+        return cls(nothing, "uniform", None, None, passed=False, time=StageTime(0.0, 0.0))
+
+    @property
+    def status(self) -> str:
+        """``ok``, ``chance`` or ``no_model``."""
+        if self.model.matrix is None:
+            return "no_model"
+        return "ok" if self.passed else "chance"
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,28 +263,3 @@ class Verifier:
             raw = _estimate(look.find, points_1, shuffled, look.parameters)
             counts.append(_checked(*raw, len(points_1)).count)
         return counts
-
-
-class Verifiers:
-    """A verifier for each combination: their inlier thresholds may differ.
-
-    Parameters
-    ----------
-    protocol : MeasurementProtocol
-    geometry : {"homography", "epipolar"}
-    clock : Clock
-    """
-
-    def __init__(self, protocol: MeasurementProtocol, geometry: Geometry, clock: Clock) -> None:
-        self._protocol, self._geometry, self._clock = protocol, geometry, clock
-        self._made: dict[float, Verifier] = {}
-
-    def of(self, combination: Combination) -> Verifier:
-        """The verifier of a combination."""
-        protocol = self._protocol
-        threshold = protocol.threshold(combination)
-        if threshold not in self._made:
-            verification = replace(protocol.verification, threshold=threshold)
-            own = replace(protocol, verification=verification)
-            self._made[threshold] = Verifier(own, self._geometry, self._clock)
-        return self._made[threshold]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+NO_PAIR = -1
+"""In place of a pair's number where an image is worked on by itself."""
+
 
 @dataclass(frozen=True)
 class StageCall:

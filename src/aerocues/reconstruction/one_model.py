@@ -8,7 +8,9 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from aerocues.methods.combination import Combination
+from aerocues.pipeline.feature_source import Announce
 from aerocues.pipeline.features import StageError
+from aerocues.pipeline.pair_stages import stage_call
 from aerocues.reconstruction.colmap import registered
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import (
@@ -22,7 +24,7 @@ from aerocues.reconstruction.diagnosis import (
 from aerocues.reconstruction.exports import MODEL, PLY, TEXT, UNDISTORTED, export_model, undistort
 from aerocues.reconstruction.mapping import map_scene
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
-from aerocues.reconstruction.matching import Announce, SceneMatcher, call_of
+from aerocues.reconstruction.matching import SceneMatcher
 from aerocues.reconstruction.picture import picture_of
 from aerocues.reconstruction.quality import cloud_of, model_figures
 from aerocues.reconstruction.scene import Scene
@@ -140,26 +142,26 @@ class ModelMaker:
     def _timed(self, stage: str, call: Callable[[], Result]) -> Result:
         self._stage = stage
         images = f"{len(self._scene.dataset.images)} images"
-        self._announce(call_of(stage, self._combination, images))
+        self._announce(stage_call(stage, self._combination, images))
         begun = time.process_time()
         found = call()
         self._row[f"{stage}_seconds"] = time.process_time() - begun
         return found
 
     def _verify(self, matched: MatchedScene) -> tuple[dict[Names, int], dict[str, int]]:
-        linked = linked_pairs(matched, self._scene.protocol)
+        linked = linked_pairs(matched, self._scene, self._combination)
         self._row["linked_pairs"] = len(linked)
         database = self._folder / DATABASE
         numbers = write_database(database, self._scene, matched, linked)
         if not linked:
             return {}, numbers
-        verify(database, linked, self._scene.protocol)
+        verify(database, linked, self._scene, self._combination)
         return verified_inliers(database, numbers), numbers
 
     def _judge(self, model: Any, inliers: dict[Names, int]) -> Outcome:
         """Measure the largest model, write it out and say what it is worth."""
         scene = self._scene
-        self._announce(call_of("judging", self._combination, "its model"))
+        self._announce(stage_call("judging", self._combination, "its model"))
         if scene.wanted.colours:
             model.extract_colors_for_all_images(str(scene.images))
         requirements = scene.protocol.requirements

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from aerocues.errors import ReconstructionError
 from aerocues.evaluation.run import usable_cores
@@ -51,6 +52,9 @@ class ReconstructionOptions:
     wanted : Wanted
     reference : str or None
         Combination to whose cloud distances are measured; the largest model by default.
+    features : path, optional
+        Folder in which features are kept, and found if `run` or another reconstruction kept them
+        there; by default they are kept for the time of the reconstruction only.
     workers, memory_limit_mb : int or None
         Processes at a time, one a core by default; memory of each, their share of 80 %.
     time_limit : float
@@ -63,6 +67,7 @@ class ReconstructionOptions:
     protocol: ReconstructionProtocol = field(default_factory=ReconstructionProtocol)
     wanted: Wanted = field(default_factory=Wanted)
     reference: str | None = None
+    features: str | Path | None = None
     workers: int | None = None
     memory_limit_mb: int | None = None
     time_limit: float = TIME_LIMIT

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import abc
 from dataclasses import asdict, dataclass, field
 from math import isfinite
 from typing import Literal
@@ -73,6 +74,9 @@ class ReconstructionProtocol:
         Pairs whose matches do not beat chance are not given to COLMAP. With thousands of
         keypoints, images that share nothing have more than enough matches to be verified by
         COLMAP's rules; they cost most of the time of mapping, and some pull cameras away.
+    thresholds : mapping of str to float
+        Inlier thresholds in pixels of "DETECTOR-DESCRIPTOR", where a preset gives them: of the
+        test against chance and of COLMAP's verification.
 
     Raises
     ------
@@ -87,6 +91,7 @@ class ReconstructionProtocol:
     mapper: Mapper = "incremental"
     verification: Verification = field(default_factory=Verification)
     chance: ChanceTest | None = field(default_factory=ChanceTest)
+    thresholds: abc.Mapping[str, float] = field(default_factory=dict)
     mapping: Mapping = Mapping()
     requirements: Requirements = Requirements()
 
@@ -107,5 +112,10 @@ class ReconstructionProtocol:
         }
 
     def identity(self) -> dict[str, object]:
-        """What decides a model and what is said of it."""
-        return {"version": RECONSTRUCTION_VERSION, **asdict(self)}
+        """What decides the models of all combinations and what is said of them.
+
+        Thresholds are of some combinations only.
+        """
+        settings = asdict(self)
+        del settings["thresholds"]
+        return {"version": RECONSTRUCTION_VERSION, **settings}

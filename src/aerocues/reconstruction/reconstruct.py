@@ -16,6 +16,7 @@ from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import as_preset
 from aerocues.methods.selection import select
 from aerocues.methods.strongest import limited
+from aerocues.pipeline.feature_folder import checked_folder
 from aerocues.reconstruction.colmap import colmap_version
 from aerocues.reconstruction.engine import (
     ReconstructionLimits,
@@ -23,8 +24,8 @@ from aerocues.reconstruction.engine import (
     prepare_images,
     run_reconstructions,
 )
-from aerocues.reconstruction.feature_files import remove_features
 from aerocues.reconstruction.images import cameras_of, read_prepared, write_prepared
+from aerocues.reconstruction.matching import remove_features
 from aerocues.reconstruction.models import (
     RETRIED,
     SETTINGS,
@@ -36,7 +37,7 @@ from aerocues.reconstruction.models import (
 )
 from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
 from aerocues.reconstruction.references import with_distances
-from aerocues.reconstruction.scene import Scene
+from aerocues.reconstruction.scene import FEATURES, Scene
 from aerocues.results.folder_lock import folder_lock
 from aerocues.results.metrics import Row
 from aerocues.results.store import Store
@@ -86,7 +87,7 @@ def reconstruct_scene(
                 observer.without_reference(reference, str(rows[reference]["message"]))
             if rows:
                 _write_rows(scene, rows, reference, store)
-        remove_features(output)
+        remove_features(scene)
     return Models(output)
 
 
@@ -122,12 +123,21 @@ def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Sc
         dataset=dataset,
         methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
         preset=preset.name,
-        protocol=replace(options.protocol, chance=chance),
+        protocol=replace(options.protocol, chance=chance, thresholds=preset.thresholds),
         folder=output.absolute(),
+        features=_features_folder(output, options),
+        machine=machine_name(),
         image_keys={image.name: image.source.content_key() for image in dataset.images},
         wanted=options.wanted,
         versions=(software_versions()["opencv"], colmap_version()),
     )
+
+
+def _features_folder(output: Path, options: ReconstructionOptions) -> Path:
+    """Where features are kept: for this work only, unless a folder is named."""
+    if options.features is None:
+        return output.absolute() / FEATURES
+    return checked_folder(Path(options.features).absolute())
 
 
 def _chosen(
@@ -234,7 +244,7 @@ def _reconstruct(
             row = {**_identity(scene, combination), **figures, **when}
             write_outcome(scene.place(combination), row)
             if last:
-                remove_features(scene.folder, combination)
+                remove_features(scene, combination)
             observer.finished(row)
             yield combination, row
 
@@ -256,7 +266,7 @@ def _identity(scene: Scene, combination: Combination) -> Row:
         "seed": protocol.seed,
         "opencv_version": scene.versions[0],
         "colmap_version": scene.versions[1],
-        "machine": machine_name(),
+        "machine": scene.machine,
         "settings_key": scene.settings_key(),
         "row_key": scene.row_key(combination),
     }

@@ -9,6 +9,8 @@ from pathlib import Path
 from aerocues.datasets.dataset import Dataset
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
+from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.results.hashing import content_hash
 
@@ -50,7 +52,8 @@ class Wanted:
 class Scene:
     """What all reconstructions of a run share; sent to each process once.
 
-    ``image_keys`` are hashes of the images' pixels by name. ``folder`` holds the models.
+    ``image_keys`` are hashes of the images' pixels by name. ``folder`` holds the models,
+    ``features`` the features of the images.
     """
 
     dataset: Dataset
@@ -58,6 +61,8 @@ class Scene:
     preset: str
     protocol: ReconstructionProtocol
     folder: Path
+    features: Path
+    machine: str
     image_keys: Mapping[str, str]
     cameras: tuple[CameraGroup, ...] = ()
     wanted: Wanted = Wanted()
@@ -72,18 +77,22 @@ class Scene:
         """The folder of a combination's model."""
         return self.folder / str(combination)
 
-    def features_key(self, name: str, combination: Combination) -> str:
-        """Names the features of one image."""
-        parameters = self.methods.parameters(combination)
-        return content_hash(
-            [
-                self.image_keys[name],
-                parameters["detector"],
-                parameters["descriptor"],
-                self.protocol.matching_identity(),
-                self.versions[0],
-            ]
+    def measurement(self) -> MeasurementProtocol:
+        """How pairs of images are measured under the same seed, limit and thresholds."""
+        protocol = self.protocol
+        return MeasurementProtocol(
+            seed=protocol.seed,
+            verification=protocol.verification,
+            chance=protocol.chance,
+            limit=KeypointLimit(protocol.max_keypoints),
+            thresholds=protocol.thresholds,
         )
+
+    def threshold(self, combination: Combination) -> float | None:
+        """The inlier threshold that the preset gives a combination, in pixels; None: the usual."""
+        measurement = self.measurement()
+        own = measurement.threshold(combination)
+        return None if own == measurement.verification.threshold else own
 
     def matching_key(self, combination: Combination) -> str:
         """Names the matches of all pairs."""
@@ -117,9 +126,9 @@ class Scene:
 
     def row_key(self, combination: Combination) -> str:
         """Names a model and the files that are made of it."""
-        return content_hash(
-            [self.settings_key(), self.matching_key(combination), asdict(self.wanted)]
-        )
+        content = [self.settings_key(), self.matching_key(combination), asdict(self.wanted)]
+        threshold = self.threshold(combination)
+        return content_hash(content if threshold is None else [*content, threshold])
 
     def _pairs(self) -> list[tuple[str, str]]:
         return [(pair.image_1, pair.image_2) for pair in self.dataset.pairs]

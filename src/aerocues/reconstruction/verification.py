@@ -6,23 +6,22 @@ from pathlib import Path
 
 import numpy as np
 
+from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
-from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import Verifier
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
-from aerocues.reconstruction.protocol import ReconstructionProtocol
+from aerocues.reconstruction.scene import Scene
 
 
-def linked_pairs(matched: MatchedScene, protocol: ReconstructionProtocol) -> list[Names]:
+def linked_pairs(matched: MatchedScene, scene: Scene, combination: Combination) -> list[Names]:
     """The pairs whose matches beat chance; without a chance test, all with enough matches."""
-    least = protocol.verification.minimum_matches
+    least = scene.protocol.verification.minimum_matches
     enough = [names for names, matches in matched.pairs.items() if len(matches) >= least]
-    if protocol.chance is None:
+    if scene.protocol.chance is None:
         return enough
-    measurement = MeasurementProtocol(
-        seed=protocol.seed, verification=protocol.verification, chance=protocol.chance
-    )
-    verifier = Verifier(measurement, "epipolar", Clock(protocol.seed))
+    measurement = scene.measurement()
+    measurement = measurement.with_threshold(measurement.threshold(combination))
+    verifier = Verifier(measurement, "epipolar", Clock(measurement.seed))
     return [names for names in enough if _beats_chance(verifier, matched, names)]
 
 
@@ -32,12 +31,15 @@ def _beats_chance(verifier: Verifier, matched: MatchedScene, names: Names) -> bo
     return verifier.verify(first, second, order).passed
 
 
-def verify(database: Path, pairs: list[Names], protocol: ReconstructionProtocol) -> None:
+def verify(database: Path, pairs: list[Names], scene: Scene, combination: Combination) -> None:
     """Verify all pairs in the database, by essential or fundamental matrix and homography."""
     import pycolmap
 
     options = pycolmap.TwoViewGeometryOptions()
+    protocol, threshold = scene.protocol, scene.threshold(combination)
     options.ransac.max_num_trials = protocol.mapping.verification_trials
+    if threshold is not None:
+        options.ransac.max_error = threshold
     if hasattr(options.ransac, "random_seed"):
         options.ransac.random_seed = protocol.seed
     pycolmap.set_random_seed(protocol.seed)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,10 +11,10 @@ from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.unit import Context
 from aerocues.methods.arrays import Features
 from aerocues.methods.combination import Combination
-from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.pipeline.clock import Clock
-from aerocues.pipeline.features import FeatureExtractor, ImageFeatures, StageError, run_stage
-from aerocues.pipeline.verification import Verifiers
+from aerocues.pipeline.feature_source import FeatureSource
+from aerocues.pipeline.features import StageError, unless_failed
+from aerocues.pipeline.pair_stages import PairStages, matched_points
 
 Floats = NDArray[np.float32]
 
@@ -62,14 +60,12 @@ class Drawer:
     """
 
     def __init__(self, context: Context) -> None:
-        cv2.setNumThreads(1)
-        self._context = context
-        self._seed = context.protocol.seed
-        clock = Clock(self._seed)
-        self._extractor = FeatureExtractor(clock, self._seed, context.protocol.limit)
-        self._verifiers = Verifiers(context.protocol, context.dataset.geometry, clock)
+        protocol = replace(context.protocol, timing="shared")
+        clock = Clock(protocol.seed)
+        self._dataset = context.dataset
+        self._features = FeatureSource(context.methods, protocol, clock)
+        self._stages = PairStages(context.methods, protocol, context.dataset.geometry, clock)
         self._pair: Pair | None = None
-        self._images: dict[tuple[str, str], ImageFeatures] = {}
 
     def draw(self, pair_index: int, combination: Combination) -> DrawnMatches | str:
         """The matches, or why there are none; features are shared within a pair.
@@ -80,9 +76,9 @@ class Drawer:
             The pair's number in the dataset.
         combination : Combination
         """
-        pair = self._context.dataset.pair(pair_index)
+        pair = self._dataset.pair(pair_index)
         if pair is not self._pair:
-            self._images.clear()
+            self._features.trim()
             self._pair = pair
         try:
             first = self._describe(combination, pair.image_1)
@@ -91,44 +87,26 @@ class Drawer:
         except StageError as failure:
             return failure.message or f"{failure.status.replace('_', ' ')} on this pair"
 
-    def _describe(self, combination: Combination, image_name: str) -> Features:
-        methods = self._context.methods
-        key = (combination.detector, image_name)
-        if key not in self._images:
-            detector = run_stage(
-                combination.detector, lambda: make_detector(methods, combination.detector)
-            )
-            image = self._context.dataset.image(image_name)
-            self._images[key] = self._extractor.detect(image, combination.detector, detector)
-        name = combination.descriptor
-        descriptor = run_stage(name, lambda: make_descriptor(methods, name, combination.detector))
-        if not len(self._images[key].keypoints):
+    def _describe(self, combination: Combination, name: str) -> Features:
+        found = unless_failed(
+            self._features.detected(self._dataset.image(name), combination.detector)
+        )
+        if not len(found.keypoints):
             raise StageError("no_keypoints", None)
-        return self._extractor.describe(self._images[key], name, name, descriptor).features
+        features = self._features.described(found, combination).features
+        if not len(features):
+            raise StageError("no_descriptors", None)
+        return features
 
     def _match(self, combination: Combination, first: Features, second: Features) -> DrawnMatches:
-        what = str(combination)
-        if not len(first) or not len(second):
-            raise StageError("no_descriptors", None)
-        matcher = run_stage(
-            what,
-            lambda: make_matcher(self._context.methods, combination.matcher, combination.norm),
-        )
-        cv2.setRNGSeed(self._seed)
-        found = run_stage(what, lambda: matcher.read(matcher.call(first, second)))
-        points_1 = first.keypoints.xy[found.indices[:, 0]]
-        points_2 = second.keypoints.xy[found.indices[:, 1]]
-        inliers: Any = np.zeros(len(found), bool)
-        verified = len(found) >= self._context.protocol.verification.minimum_matches
-        if verified:
-            order = np.argsort(found.distance, kind="stable")
-            verifier = self._verifiers.of(combination)
-            verdict = run_stage(what, lambda: verifier.verify(points_1, points_2, order))
-            inliers = verdict.model.inliers
+        images = "this pair"
+        matches, _ = self._stages.match(combination, (first, second), images)
+        points, order = matched_points(first, second, matches)
+        verdict = self._stages.verify(combination, points, order, images)
         return DrawnMatches(
             keypoints_1=first.keypoints.xy,
             keypoints_2=second.keypoints.xy,
-            matches=np.hstack([points_1, points_2]),
-            inliers=inliers,
-            verified=verified,
+            matches=np.hstack(points),
+            inliers=np.zeros(len(matches), bool) if verdict is None else verdict.model.inliers,
+            verified=verdict is not None,
         )

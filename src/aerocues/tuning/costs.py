@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from aerocues.evaluation.cost import TYPICAL_MEGAPIXELS, match_seconds
-from aerocues.evaluation.two_views import BRUTE_FORCE
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
+from aerocues.pipeline.pair_stages import BRUTE_FORCE
 from aerocues.results.metrics import Row
 from aerocues.tuning.scales import Array
 

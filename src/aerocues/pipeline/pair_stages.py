@@ -1,0 +1,159 @@
+"""Matches of two images and their verified geometry, under any combination."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from aerocues.datasets.dataset import Geometry
+from aerocues.methods.arrays import Features, Float32Array, Matches
+from aerocues.methods.combination import Combination
+from aerocues.methods.making import MatcherStage, make_matcher
+from aerocues.methods.registry import Methods
+from aerocues.pipeline.brute_force_time import SampledBruteForce
+from aerocues.pipeline.clock import Clock, StageTime
+from aerocues.pipeline.feature_source import Announce, silent
+from aerocues.pipeline.features import run_stage, warm_up
+from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.pipeline.verification import IndexArray, Verdict, Verifier
+from aerocues.processes.call import NO_PAIR, StageCall
+
+BRUTE_FORCE = "BF"
+WARM_UP_FEATURES = 32
+
+
+class PairStages:
+    """Matches and verifies; matchers and verifiers are made once and kept.
+
+    Parameters
+    ----------
+    methods : Methods
+    protocol : MeasurementProtocol
+    geometry : {"homography", "epipolar"}
+        Of the images.
+    clock : Clock
+    announce : callable
+        Called with each stage call before it begins.
+    """
+
+    def __init__(
+        self,
+        methods: Methods,
+        protocol: MeasurementProtocol,
+        geometry: Geometry,
+        clock: Clock,
+        announce: Announce = silent,
+    ) -> None:
+        self._methods = methods
+        self._protocol = protocol
+        self._geometry = geometry
+        self._clock = clock
+        self._announce = announce
+        self._matchers: dict[tuple[str, str], MatcherStage] = {}
+        self._verifiers: dict[float, Verifier] = {}
+
+    def match(
+        self,
+        combination: Combination,
+        features: tuple[Features, Features],
+        images: str,
+        pair: int = NO_PAIR,
+    ) -> tuple[Matches, StageTime]:
+        """Mutual matches of two images, and the time of the call.
+
+        Parameters
+        ----------
+        combination : Combination
+        features : tuple of Features
+            Of the first and of the second image; none may be empty.
+        images : str
+            What the images are called, for `announce` and for messages.
+        pair : int
+            The pair that is worked on, for `announce`.
+
+        Raises
+        ------
+        StageError
+            If the matcher fails.
+        """
+        self._announce(stage_call("match", combination, images, pair))
+        what = f"{combination} matching {images}"
+        matcher = self._matcher(combination, features, what)
+        if combination.matcher == BRUTE_FORCE and self._protocol.timing == "estimated":
+            sampled = SampledBruteForce(matcher, combination.norm, self._clock)
+            return run_stage(what, lambda: sampled.match(*features))
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(*features)))
+        return run_stage(what, lambda: matcher.read(raw)), time
+
+    def verify(
+        self,
+        combination: Combination,
+        points: tuple[Float32Array, Float32Array],
+        order: IndexArray,
+        images: str,
+        pair: int = NO_PAIR,
+    ) -> Verdict | None:
+        """The model that matches agree on; None with too few matches to look for one.
+
+        Parameters
+        ----------
+        combination : Combination
+        points : tuple of (M, 2) float32
+            Matched points of the first and of the second image, pixels.
+        order : (M,) int
+            The matches by descriptor distance, the smallest first.
+        images, pair
+            As in `match`.
+
+        Raises
+        ------
+        StageError
+            If OpenCV refuses the points.
+        """
+        if len(points[0]) < self._protocol.verification.minimum_matches:
+            return None
+        self._announce(stage_call("verify", combination, images, pair))
+        verifier = self.verifier(combination)
+        what = f"verifying {combination} on {images}"
+        return run_stage(what, lambda: verifier.verify(*points, order))
+
+    def verifier(self, combination: Combination) -> Verifier:
+        """The verifier of a combination: inlier thresholds may differ."""
+        threshold = self._protocol.threshold(combination)
+        if threshold not in self._verifiers:
+            own = self._protocol.with_threshold(threshold)
+            self._verifiers[threshold] = Verifier(own, self._geometry, self._clock)
+        return self._verifiers[threshold]
+
+    def _matcher(
+        self, combination: Combination, features: tuple[Features, Features], what: str
+    ) -> MatcherStage:
+        kind = (combination.matcher, combination.norm)
+        if kind not in self._matchers:
+            made = run_stage(what, lambda: make_matcher(self._methods, *kind))
+            few = [_first_ones(each) for each in features]
+            warm_up(lambda: made.call(*few))
+            self._matchers[kind] = made
+        return self._matchers[kind]
+
+
+def matched_points(
+    first: Features, second: Features, matches: Matches
+) -> tuple[tuple[Float32Array, Float32Array], IndexArray]:
+    """The (M, 2) points of matches in both images, and the matches by descriptor distance."""
+    points = (
+        first.keypoints.xy[matches.indices[:, 0]],
+        second.keypoints.xy[matches.indices[:, 1]],
+    )
+    return points, np.argsort(matches.distance, kind="stable")
+
+
+def stage_call(stage: str, combination: Combination, images: str, pair: int = NO_PAIR) -> StageCall:
+    """A stage of one combination, as it is announced."""
+    return StageCall(
+        stage, pair, images, combination.detector, combination.descriptor, str(combination)
+    )
+
+
+def _first_ones(features: Features) -> Features:
+    kept = np.arange(min(len(features), WARM_UP_FEATURES))
+    return Features(features.keypoints.take(kept), features.descriptors[kept])

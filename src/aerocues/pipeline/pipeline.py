@@ -1,0 +1,165 @@
+"""One combination from images to features, matches and a verified geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Geometry, Image
+from aerocues.datasets.decoded import DecodedSource, pixels_of
+from aerocues.datasets.decoding import FileSource
+from aerocues.errors import MethodFailedError, SelectionError
+from aerocues.methods.arrays import Features, Matches
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import Preset, as_preset
+from aerocues.methods.selection import select
+from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.feature_source import FeatureSource
+from aerocues.pipeline.features import StageError
+from aerocues.pipeline.pair_stages import PairStages, matched_points
+from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.pipeline.verification import Verdict
+
+Result = TypeVar("Result")
+
+
+class Pipeline:
+    """One combination of detector, descriptor, norm and matcher, as it is measured.
+
+    Two pipelines with the same arguments give the same arrays.
+
+    Parameters
+    ----------
+    combination : str or Combination
+        Such as ``"ORB-BEBLID-HAM-BF"``, in any case.
+    preset : str or Preset
+        Parameters of the methods, inlier thresholds and whether models must beat chance; or the
+        file of a preset.
+    max_keypoints : int
+        The strongest keypoints that are kept in an image; 0 keeps all.
+    seed : int
+        Set before every call of OpenCV.
+    geometry : {"epipolar", "homography"}
+        ``homography`` where the images show a plane or are taken from one place: where no
+        fundamental matrix beats chance, a homography is tried, too.
+
+    Raises
+    ------
+    SelectionError
+        If there is no such combination or preset, or the combination cannot run here.
+    """
+
+    def __init__(
+        self,
+        combination: str | Combination,
+        preset: str | Preset = "default",
+        *,
+        max_keypoints: int = 0,
+        seed: int = 0,
+        geometry: Geometry = "epipolar",
+    ) -> None:
+        if max_keypoints < 0 or seed < 0:
+            raise SelectionError("max_keypoints and seed must be 0 or more")
+        parts, limit = as_preset(preset), KeypointLimit(max_keypoints)
+        methods = limit.limited(installed_methods().with_preset(parts))
+        chosen = select(methods, str(combination))
+        if len(chosen) != 1:
+            raise SelectionError(
+                f"{combination} names {len(chosen)} combinations; name one, such as {chosen[0]}"
+            )
+        protocol = MeasurementProtocol.of_preset(parts, seed=seed, limit=limit)
+        clock = Clock(seed)
+        self.combination = chosen[0]
+        self._source = FeatureSource(methods, protocol, clock)
+        self._stages = PairStages(methods, protocol, geometry, clock)
+
+    def features(self, image: str | Path | NDArray[np.uint8] | Image) -> Features:
+        """The keypoints that the descriptor describes, and their descriptors.
+
+        Parameters
+        ----------
+        image : path, (H, W, 3) or (H, W) uint8 array, or Image
+            Blue, green, red, or gray.
+
+        Returns
+        -------
+        Features
+            ``keypoints.xy`` is (N, 2) float32, pixels, with the centre of the top-left pixel at
+            (0, 0); ``descriptors`` is (N, D) uint8 or float32.
+
+        Raises
+        ------
+        ImageError
+            If the image cannot be read, or the array is none of an image.
+        MethodFailedError
+            If the detector or the descriptor fails on it.
+        """
+        decoded = _decoded(image)
+        return self._run(lambda: self._features(decoded))
+
+    def match(self, first: Features, second: Features) -> Matches:
+        """Mutual matches of two images.
+
+        Returns
+        -------
+        Matches
+            ``indices`` is (M, 2) int32: keypoints of the first and of the second image;
+            ``distance`` is (M,) float32, of their descriptors.
+
+        Raises
+        ------
+        MethodFailedError
+            If the matcher fails.
+        """
+        if not len(first) or not len(second):
+            return Matches()
+        return self._run(
+            lambda: self._stages.match(self.combination, (first, second), "two images")[0]
+        )
+
+    def verify(self, first: Features, second: Features, matches: Matches) -> Verdict:
+        """The geometry that matches agree on.
+
+        Returns
+        -------
+        Verdict
+            ``model.matrix`` is (3, 3) float64 or None, ``model.inliers`` (M,) bool in the order of
+            `matches`; ``passed`` tells whether the model beats chance, where the preset asks that.
+
+        Raises
+        ------
+        MethodFailedError
+            If OpenCV refuses the points.
+        """
+        points, order = matched_points(first, second, matches)
+        verdict = self._run(
+            lambda: self._stages.verify(self.combination, points, order, "two images")
+        )
+        return verdict or Verdict.too_few(len(matches))
+
+    def _features(self, image: Image) -> Features:
+        try:
+            return self._source.features(image, self.combination).features
+        finally:
+            self._source.forget()
+
+    def _run(self, call: Callable[[], Result]) -> Result:
+        try:
+            return call()
+        except StageError as error:
+            raise MethodFailedError(error.message or error.status) from error
+
+
+def _decoded(image: str | Path | NDArray[np.uint8] | Image) -> Image:
+    """The image in memory: what is wrong with a file is told as such."""
+    if isinstance(image, Image):
+        return Image(image.name, DecodedSource(image.read()))
+    if isinstance(image, str | Path):
+        return Image(Path(image).name, DecodedSource(FileSource(Path(image)).read()))
+    return Image("the image", DecodedSource(pixels_of(image)))
