@@ -1,4 +1,4 @@
-"""Measurements that were made already, as an arena to race in."""
+"""Measurements that were made already, as an evaluator to race in."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.scoring.criteria import Criterion
-from aerocues.tuning.arena import Cell
+from aerocues.tuning.criteria_evaluator import Cell
 from aerocues.tuning.scales import Array
 
 
-class ReplayArena:
+class ReplayEvaluator:
     """Hands out stored values, and counts what they would have cost.
 
     What a detector does to an image, and a descriptor to its keypoints, is paid once a pair, as

@@ -10,9 +10,9 @@ import numpy as np
 
 from aerocues.evaluation.engine import Activity, Engine
 from aerocues.results.metrics import Row
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.grids import Setting
-from aerocues.tuning.image_arena import criterion_values, rows_frame
+from aerocues.tuning.image_evaluator import criterion_values, rows_frame
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.scales import Array
 from aerocues.tuning.splits import Split
 from aerocues.tuning.subjects import Subject
@@ -87,7 +87,7 @@ class Finding:
 class Field:
     """A data set that is searched on."""
 
-    bench: Bench
+    evaluator: PairEvaluator
     engine: Engine
     split: Split
 
@@ -179,10 +179,10 @@ class Search:
         return [each for each in mixed if subject.kind != "threshold" or self._has_truth(each)]
 
     def _scene(self, pair: tuple[int, int]) -> tuple[int, str]:
-        return pair[0], self._fields[pair[0]].bench.context.dataset.pair(pair[1]).sequence
+        return pair[0], self._fields[pair[0]].evaluator.context.dataset.pair(pair[1]).sequence
 
     def _has_truth(self, pair: tuple[int, int]) -> bool:
-        dataset = self._fields[pair[0]].bench.context.dataset
+        dataset = self._fields[pair[0]].evaluator.context.dataset
         images = dataset.pair(pair[1])
         return images.homography is not None or dataset.true_views(images) is not None
 
@@ -197,11 +197,13 @@ class Search:
                 for place, pair in pairs
                 if place == number
                 for each in named
-                if field.bench.possible((pair, each))
+                if field.evaluator.possible((pair, each))
             ]
-            field.bench.measure(asked, field.engine, deadline=self._deadline, watch=self._watch)
+            field.evaluator.measure(asked, field.engine, deadline=self._deadline, watch=self._watch)
         return [
-            self._fields[place].bench.row((pair, each)) for each in named for place, pair in pairs
+            self._fields[place].evaluator.row((pair, each))
+            for each in named
+            for place, pair in pairs
         ]
 
     def _values(

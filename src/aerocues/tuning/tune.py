@@ -23,7 +23,7 @@ from aerocues.methods.presets import Preset, preset_named
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.results.store import Store
 from aerocues.results.versions import machine_name, software_versions
-from aerocues.tuning.bench import Bench
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.search import Field, Finding, Search
 from aerocues.tuning.splits import Split, given_split, split_pairs
 from aerocues.tuning.subjects import Subject, subjects_named
@@ -149,9 +149,9 @@ def tune(
                 for subject in subjects
                 for number in range(len(subject.settings))
             )
-            bench = Bench(context, list(asked), store, base, listener.hashing)
+            evaluator = PairEvaluator(context, list(asked), store, base, listener.hashing)
             engine = local_engine(limits or Limits(), "estimated")
-            fields.append(Field(bench, engines.enter_context(engine.standing(context)), split))
+            fields.append(Field(evaluator, engines.enter_context(engine.standing(context)), split))
         search = Search(
             fields,
             objective,
