@@ -28,6 +28,7 @@ from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.race import RaceOutcome, RaceSettings, Round, race
+from aerocues.tuning.race_ranking import race_ranking
 from aerocues.tuning.representative import (
     FEWEST_PAIRS,
     MOST_PAIRS,
@@ -37,7 +38,6 @@ from aerocues.tuning.representative import (
     spread_pairs,
 )
 from aerocues.tuning.session import Session
-from aerocues.tuning.standing import standing
 
 if TYPE_CHECKING:
     import polars as pl
@@ -222,7 +222,7 @@ def recommend(
         len(dataset.pairs),
         objective,
         outcome,
-        standing(evaluators.race, chosen, seen.overlapping, outcome, options.device),
+        race_ranking(evaluators.race, chosen, seen.overlapping, outcome, options.device),
         len(chosen),
         int(outcome.known.any(axis=1).sum()),
         store.folder,

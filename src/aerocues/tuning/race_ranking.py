@@ -1,4 +1,4 @@
-"""How combinations stand after a race: what was measured of each, in the order of their scores."""
+"""The ranking after a race, with what was measured of each combination."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MEDIANS = ("precision_beyond_chance", "precision", "excess_inliers", "inliers")
 
 
-def standing(
+def race_ranking(
     evaluator: PairEvaluator,
     combinations: Sequence[Combination],
     pairs: Sequence[int],
