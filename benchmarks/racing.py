@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from replay import ReplayEvaluator
 
 from aerocues.results.measured_results import Results
 from aerocues.scoring.combinations import METHODS
@@ -28,7 +29,6 @@ from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.costs import EXACT_SECONDS, EXACT_SHARE
 from aerocues.tuning.race import FEW, RaceSettings, race
-from aerocues.tuning.replay import ReplayEvaluator
 
 NAMES = (
     "recall", "precision", "repeatability", "f1_score", "inliers", "matches",

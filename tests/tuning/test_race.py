@@ -12,8 +12,8 @@ from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.cues import score
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.race import RaceOutcome, RaceSettings, race
-from aerocues.tuning.replay import ReplayEvaluator
 from aerocues.tuning.scales import Scales
+from benchmarks.replay import ReplayEvaluator
 
 CRITERIA = (Criterion("precision"), Criterion("inliers"), Criterion("seconds", "lower"))
 DETECTORS, DESCRIPTORS, MATCHERS = "abcdef", "uvwxyz", "mn"

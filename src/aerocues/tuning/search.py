@@ -84,7 +84,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Field:
+class TuningDataset:
     """A data set that is searched on."""
 
     evaluator: PairEvaluator
@@ -97,7 +97,7 @@ class Search:
 
     Parameters
     ----------
-    fields : sequence of Field
+    datasets : sequence of TuningDataset
     objective : SearchObjective
     seed : int
     deadline : float
@@ -108,13 +108,13 @@ class Search:
 
     def __init__(
         self,
-        fields: Sequence[Field],
+        datasets: Sequence[TuningDataset],
         objective: SearchObjective,
         seed: int,
         deadline: float = float("inf"),
         watch: Callable[[Sequence[Activity]], None] = lambda _: None,
     ) -> None:
-        self._fields, self._objective, self._seed = fields, objective, seed
+        self._datasets, self._objective, self._seed = datasets, objective, seed
         self._deadline, self._watch = deadline, watch
 
     def run(self, space: SearchSpace) -> Finding:
@@ -168,21 +168,21 @@ class Search:
         return Finding(space, tried, setting, *figures, pays, why_not, judged_by)
 
     def _pairs(self, space: SearchSpace, side: str) -> list[tuple[int, int]]:
-        """Field and number of each pair that can serve, the data sets and scenes mixed."""
+        """Position of the dataset and number of each usable pair, in random order."""
         pairs = [
             (number, pair)
-            for number, field in enumerate(self._fields)
-            for pair in getattr(field.split, side)
+            for number, dataset in enumerate(self._datasets)
+            for pair in getattr(dataset.split, side)
         ]
         order = np.random.default_rng(self._seed).permutation(len(pairs))
         mixed = [pairs[place] for place in order]
         return [each for each in mixed if space.kind != "threshold" or self._has_truth(each)]
 
     def _scene(self, pair: tuple[int, int]) -> tuple[int, str]:
-        return pair[0], self._fields[pair[0]].evaluator.context.dataset.pair(pair[1]).sequence
+        return pair[0], self._datasets[pair[0]].evaluator.context.dataset.pair(pair[1]).sequence
 
     def _has_truth(self, pair: tuple[int, int]) -> bool:
-        dataset = self._fields[pair[0]].evaluator.context.dataset
+        dataset = self._datasets[pair[0]].evaluator.context.dataset
         images = dataset.pair(pair[1])
         return images.homography is not None or dataset.true_views(images) is not None
 
@@ -191,17 +191,19 @@ class Search:
     ) -> list[Row | None]:
         """Rows of each candidate on each pair, candidate after candidate."""
         named = [space.variant(candidate) for candidate in candidates]
-        for number, field in enumerate(self._fields):
+        for number, dataset in enumerate(self._datasets):
             asked = [
                 (pair, each)
                 for place, pair in pairs
                 if place == number
                 for each in named
-                if field.evaluator.possible((pair, each))
+                if dataset.evaluator.possible((pair, each))
             ]
-            field.evaluator.measure(asked, field.engine, deadline=self._deadline, watch=self._watch)
+            dataset.evaluator.measure(
+                asked, dataset.engine, deadline=self._deadline, watch=self._watch
+            )
         return [
-            self._fields[place].evaluator.row((pair, each))
+            self._datasets[place].evaluator.row((pair, each))
             for each in named
             for place, pair in pairs
         ]

@@ -24,7 +24,7 @@ from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.results.store import Store
 from aerocues.results.versions import machine_name, software_versions
 from aerocues.tuning.pair_evaluator import PairEvaluator
-from aerocues.tuning.search import Field, Finding, Search
+from aerocues.tuning.search import Finding, Search, TuningDataset
 from aerocues.tuning.search_objective import CUES, search_objective
 from aerocues.tuning.search_spaces import SearchSpace, search_spaces_named
 from aerocues.tuning.splits import Split, given_split, split_pairs
@@ -142,7 +142,7 @@ def tune(
     folder = Path(results) if results else file.with_name(f"{file.stem}-search")
     store = Store.create(folder)
     with store.writing(), contextlib.ExitStack() as engines:
-        fields = []
+        searched = []
         for dataset, split in zip(every, splits, strict=True):
             context = _context(_part(dataset, split), base, spaces, options)
             asked = dict.fromkeys(
@@ -150,9 +150,11 @@ def tune(
             )
             evaluator = PairEvaluator(context, list(asked), store, base, listener.hashing)
             engine = local_engine(limits or Limits(), "estimated")
-            fields.append(Field(evaluator, engines.enter_context(engine.standing(context)), split))
+            searched.append(
+                TuningDataset(evaluator, engines.enter_context(engine.standing(context)), split)
+            )
         search = Search(
-            fields,
+            searched,
             objective,
             options.seed,
             began + options.budget,

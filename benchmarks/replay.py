@@ -1,4 +1,4 @@
-"""Measurements that were made already, as an evaluator to race in."""
+"""Measurements that were made before, as an evaluator: for tests and benchmarks of the race."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aerocues.tuning.scales import Array
 
 
 class ReplayEvaluator:
-    """Hands out stored values, and counts what they would have cost.
+    """A `CriteriaEvaluator` that gives stored values and counts what they would have cost.
 
     What a detector does to an image, and a descriptor to its keypoints, is paid once a pair, as
     runs do it once; the rest of an alternative's time is its own.
