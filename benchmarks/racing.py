@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from replay import ReplayEvaluator
 
 from aerocues.results.measured_results import Results
 from aerocues.scoring.combinations import METHODS
@@ -28,7 +29,6 @@ from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.costs import EXACT_SECONDS, EXACT_SHARE
 from aerocues.tuning.race import FEW, RaceSettings, race
-from aerocues.tuning.replay import ReplayArena
 
 NAMES = (
     "recall", "precision", "repeatability", "f1_score", "inliers", "matches",
@@ -115,10 +115,12 @@ def judge(source: str, seeds: int, sure: float) -> str:
         rng = np.random.default_rng(1000 + seed)
         # Costs are known before only roughly: within a third.
         predicted = seconds.mean(axis=1) * np.exp(rng.normal(0, 0.3, len(alternatives)))
-        arena = ReplayArena(alternatives, components, criteria, values, blocks, seconds, predicted)
-        settings = RaceSettings(SHARE * arena.total, seed, sure=sure, score=ScoreSettings())
-        outcome = race(arena, settings)
-        shares.append(arena.spent / arena.total)
+        evaluator = ReplayEvaluator(
+            alternatives, components, criteria, values, blocks, seconds, predicted
+        )
+        settings = RaceSettings(SHARE * evaluator.total, seed, sure=sure, score=ScoreSettings())
+        outcome = race(evaluator, settings)
+        shares.append(evaluator.spent / evaluator.total)
         regrets.append(full[best[0]] - full[outcome.order[0]])
         found.append(len(set(outcome.order[:FEW]) & set(best[:FEW])))
         chances.append(outcome.probability[outcome.order[0]])

@@ -103,14 +103,14 @@ def tuned() -> Iterator[tuple[str, ...]]:
 
 def _searched(search: Mapping[str, Any]) -> tuple[str, ...]:
     if search["default"] is None:
-        return (search["subject"], "default", "", *("",) * 4)
+        return (search["search_space"], "default", "", *("",) * 4)
     low, high = search["interval"]
     before, after = search["default"], search["tuned"]
     figures = (
         (before[name], after[name]) for name in ("inlier_ratio", "inliers", "true_precision")
     )
     return (
-        search["subject"],
+        search["search_space"],
         _parameters({name: _constant(value) for name, value in search["best"].items()}),
         _used(search),
         f"{search['gain']:+.3f} ({low:+.3f} to {high:+.3f})",

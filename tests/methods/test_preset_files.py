@@ -102,7 +102,7 @@ def test_the_preset_tuned_holds_what_its_searches_kept_and_nothing_else() -> Non
         search for part in tuned_record()["made"] for search in part["searches"] if search["kept"]
     ]
     assert all(search["interval"][0] > 0 and search["gain"] >= 0.005 for search in kept)
-    assert {search["subject"] for search in kept if " on " not in search["subject"]} == {
+    assert {search["search_space"] for search in kept if " on " not in search["search_space"]} == {
         *(f"detector {name}" for name in preset.detectors),
         *(f"descriptor {name}" for name in preset.descriptors),
     }

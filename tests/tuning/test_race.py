@@ -12,14 +12,16 @@ from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.cues import score
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.race import RaceOutcome, RaceSettings, race
-from aerocues.tuning.replay import ReplayArena
 from aerocues.tuning.scales import Scales
+from benchmarks.replay import ReplayEvaluator
 
 CRITERIA = (Criterion("precision"), Criterion("inliers"), Criterion("seconds", "lower"))
 DETECTORS, DESCRIPTORS, MATCHERS = "abcdef", "uvwxyz", "mn"
 
 
-def arena(seed: int = 0, pairs: int = 24, blocks: int = 3, failing: float = 0.02) -> ReplayArena:
+def made_up(
+    seed: int = 0, pairs: int = 24, blocks: int = 3, failing: float = 0.02
+) -> ReplayEvaluator:
     """72 alternatives whose values come from their methods, themselves, blocks and pairs."""
     rng = np.random.default_rng(seed)
     names = [(d, e, m) for d in DETECTORS for e in DESCRIPTORS for m in MATCHERS]
@@ -40,26 +42,30 @@ def arena(seed: int = 0, pairs: int = 24, blocks: int = 3, failing: float = 0.02
         for i, what in enumerate(("detector", "descriptor", "matcher"))
     }
     labels = ["-".join(name) for name in names]
-    return ReplayArena(labels, components, CRITERIA, values, block, time, seconds)
+    return ReplayEvaluator(labels, components, CRITERIA, values, block, time, seconds)
 
 
-def full_scores(arena: ReplayArena) -> np.ndarray:
-    cells = [(a, p) for a in range(len(arena.alternatives)) for p in range(len(arena.blocks))]
-    found = arena.measure(cells)
+def full_scores(evaluator: ReplayEvaluator) -> np.ndarray:
+    cells = [
+        (a, p) for a in range(len(evaluator.alternatives)) for p in range(len(evaluator.blocks))
+    ]
+    found = evaluator.measure(cells)
     values = np.array([found[cell] for cell in cells])
-    values = values.reshape(len(arena.alternatives), len(arena.blocks), -1)
-    return score(DecisionTable.from_values(values, arena.alternatives, CRITERIA)).scores
+    values = values.reshape(len(evaluator.alternatives), len(evaluator.blocks), -1)
+    return score(DecisionTable.from_values(values, evaluator.alternatives, CRITERIA)).scores
 
 
-def run(seed: int = 0, share: float = 0.15, **settings: float) -> tuple[ReplayArena, RaceOutcome]:
-    place = arena()
+def run(
+    seed: int = 0, share: float = 0.15, **settings: float
+) -> tuple[ReplayEvaluator, RaceOutcome]:
+    place = made_up()
     chosen = replace(RaceSettings(share * place.total, seed), **settings)  # type: ignore[arg-type]
     return place, race(place, chosen)
 
 
 @pytest.mark.slow
 def test_a_race_finds_the_best_for_a_part_of_the_cost() -> None:
-    truth = full_scores(arena())
+    truth = full_scores(made_up())
     regrets = []
     for seed in range(5):
         place, outcome = run(seed)
@@ -71,9 +77,9 @@ def test_a_race_finds_the_best_for_a_part_of_the_cost() -> None:
 
 
 def test_what_is_measured_whole_is_scored_as_it_is() -> None:
-    place = arena(pairs=4, blocks=2)
+    place = made_up(pairs=4, blocks=2)
     outcome = race(place, RaceSettings(budget=10 * place.total))
-    truth = full_scores(arena(pairs=4, blocks=2))
+    truth = full_scores(made_up(pairs=4, blocks=2))
     # Once those that can win are measured on all pairs, their order is that of the truth.
     assert outcome.ended == "measured"
     assert outcome.order[0] == int(np.nanargmax(truth))
@@ -114,22 +120,22 @@ def test_the_first_look_sees_every_block() -> None:
 
 
 def test_nothing_to_choose_from_and_nothing_that_works() -> None:
-    place = arena(failing=1.1)
+    place = made_up(failing=1.1)
     with pytest.raises(ScoreError, match="every combination failed on the first pairs"):
         race(place, RaceSettings(budget=1.0))
-    lonely = arena()
+    lonely = made_up()
     lonely.alternatives = ["a-u-m"]
     with pytest.raises(ScoreError, match="a race needs two alternatives"):
         race(lonely, RaceSettings(budget=1.0))
 
 
 def test_sharing_costs_once() -> None:
-    place = arena()
+    place = made_up()
     place.measure([(0, 0)])
     alone = place.spent
     place.measure([(1, 0)])  # the same detector and descriptor, another matcher
     assert place.spent - alone < 0.7 * alone * np.exp(0.5)
-    again = arena()
+    again = made_up()
     full_scores(again)
     assert again.spent == pytest.approx(again.total)
 

@@ -20,9 +20,9 @@ from aerocues.results.metrics import Row
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.settings import preset_named as scoring_named
-from aerocues.tuning.bench import Bench
-from aerocues.tuning.image_arena import ImageArena
+from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.race import RaceOutcome, RaceSettings, race
 from aerocues.tuning.representative import look_for_overlap, probes
 from aerocues.tuning.session import Session
@@ -90,14 +90,16 @@ def sit(photos: Path, folder: Path, machine: Machine, budget: float) -> RaceOutc
     context = make_context(dataset, preset, timing="estimated")
     chosen = select(context.methods, SOME)
     asked = list(dict.fromkeys([*chosen, *probes()]))
-    bench = Bench(context, asked, Store.create(folder), preset, clock=machine.clock)
+    evaluator = PairEvaluator(context, asked, Store.create(folder), preset, clock=machine.clock)
     session = Session(Journal.read(folder, "race", budget), clock=machine.clock)
-    seen = look_for_overlap(bench, machine, dataset.pairs, session)
+    seen = look_for_overlap(evaluator, machine, dataset.pairs, session)
     scoring = scoring_named("default")
     criteria = criteria_named(scoring.criteria)
-    arena = ImageArena(bench, machine, chosen, seen.overlapping, criteria, session)
+    criteria_evaluator = ImageEvaluator(
+        evaluator, machine, chosen, seen.overlapping, criteria, session
+    )
     settings = RaceSettings(budget, score=scoring.settings, batch=6)
-    return race(arena, settings, clock=machine.clock)
+    return race(criteria_evaluator, settings, clock=machine.clock)
 
 
 def assert_same(first: RaceOutcome, second: RaceOutcome) -> None:

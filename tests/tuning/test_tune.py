@@ -170,5 +170,5 @@ def test_thresholds_are_judged_by_the_truth(call: Call, shared_data: Path, tmp_p
     )
     assert answer.code == 0, answer.err
     last = json.loads(preset.read_text())["made"]["searches"][-1]
-    assert last["subject"] == "threshold of SIFT-SIFT"
+    assert last["search_space"] == "threshold of SIFT-SIFT"
     assert last["tried"] == 5

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from aerocues.tuning.search import Finding
-    from aerocues.tuning.subjects import Subject
+    from aerocues.tuning.search_spaces import SearchSpace
     from aerocues.tuning.tune import Tuned
 
 
@@ -129,13 +129,13 @@ def _listener() -> Any:
     class Lines(Listener):
         """A line a search."""
 
-        def begins(self, subject: Subject, number: int, total: int) -> None:
+        def begins(self, space: SearchSpace, number: int, total: int) -> None:
             self._place = f"{number} of {total}"
 
         def found(self, finding: Finding) -> None:
             what = f"{setting_text(finding.best)}: {_gain(finding)}" if finding.best else "default"
             told = f"; {finding.why_not}" if finding.why_not else ""
-            sys.stderr.write(f"{self._place}: {finding.subject.name}: {what}{told}\n")
+            sys.stderr.write(f"{self._place}: {finding.space.name}: {what}{told}\n")
             sys.stderr.flush()
 
     return Lines()
@@ -178,7 +178,7 @@ def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
 def _scenes_told(findings: list[Finding]) -> str:
     """What too few scenes to judge by mean for the intervals."""
     from aerocues.cli.console import count
-    from aerocues.tuning.yardstick import FEWEST_SCENES
+    from aerocues.tuning.search_objective import FEWEST_SCENES
 
     scenes = max((each.judged_by.scenes for each in findings if each.judged_by), default=0)
     if not 0 < scenes < FEWEST_SCENES:
@@ -205,7 +205,7 @@ def table(findings: list[Finding]) -> Table:
                 _change(default.true_precision, tuned.true_precision, ".2f"),
             ]
         kept = "yes" if finding.pays else "no"
-        output.add_row(finding.subject.name, setting_text(finding.best), kept, *figures)
+        output.add_row(finding.space.name, setting_text(finding.best), kept, *figures)
     return output
 
 

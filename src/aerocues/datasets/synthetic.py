@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.datasets import geometry, photometry
 from aerocues.datasets.dataset import Dataset, Image, ImageSource, Pair, Pixels
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.fitting import equalize_luminance, fitted_size, shrink
 from aerocues.datasets.options import Options
-from aerocues.datasets.town import scenery
 from aerocues.errors import DatasetError
 
 ORIGINAL = "original"
@@ -73,33 +76,43 @@ SETS = {"synthetic": STANDARD, "synthetic-extended": EXTENDED}
 _ROWS = {row.name: row for row in EXTENDED}
 
 
+@cache
+def _town() -> NDArray[np.uint8]:
+    """(665, 1000, 3) BGR pixels of the picture in the package, read-only."""
+    data = files("aerocues.datasets").joinpath("town.png").read_bytes()
+    bgr: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    bgr.flags.writeable = False
+    return np.asarray(bgr)
+
+
 @dataclass(frozen=True)
-class DrawnSource:
-    """The town that the package draws."""
+class TownSource:
+    """The picture of a town that comes with the package."""
 
     max_width: int | None = None
     equalize: str = "none"
 
     def read(self) -> Pixels:
         """The picture at its final size; all of it is valid."""
-        pixels = shrink(Pixels(scenery.town().copy()), self.max_width)
+        pixels = shrink(Pixels(_town().copy()), self.max_width)
         return equalize_luminance(pixels, self.equalize)
 
     def size(self) -> tuple[int, int]:
         """Width and height of the picture that `read` returns."""
-        return fitted_size((scenery.WIDTH, scenery.HEIGHT), self.max_width)
+        height, width = _town().shape[:2]
+        return fitted_size((width, height), self.max_width)
 
     def is_gray(self) -> bool:
         """Never."""
         return False
 
     def content_key(self) -> str:
-        """Hash of the drawn pixels and of the settings."""
+        """Hash of the pixels and of the settings."""
         return self._content_key
 
     @cached_property
     def _content_key(self) -> str:
-        digest = hashlib.sha256(scenery.town().tobytes())
+        digest = hashlib.sha256(_town().tobytes())
         digest.update(f"|{self.max_width}|{self.equalize}".encode())
         return digest.hexdigest()
 
@@ -110,7 +123,7 @@ class TransformedSource:
 
     Parameters
     ----------
-    original : DrawnSource or FileSource
+    original : TownSource or FileSource
         Not equalised: illumination is normalised last, as it is for a photograph.
     transformation : str
         Name of a row of `EXTENDED`.
@@ -118,7 +131,7 @@ class TransformedSource:
         ``none``, ``histogram`` or ``clahe``.
     """
 
-    original: DrawnSource | FileSource
+    original: TownSource | FileSource
     transformation: str
     equalize: str = "none"
 
@@ -148,7 +161,7 @@ def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic"
     Parameters
     ----------
     image : Path or None
-        The original; None: the town that the package draws.
+        The original; the picture of a town in the package by default.
     options : Options
         `max_width` is the width of the original.
     kind : str
@@ -176,9 +189,9 @@ def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic"
     return Dataset(kind, images, pairs, "homography", settings)
 
 
-def _source(image: Path | None, max_width: int | None, equalize: str) -> DrawnSource | FileSource:
+def _source(image: Path | None, max_width: int | None, equalize: str) -> TownSource | FileSource:
     if image is None:
-        return DrawnSource(max_width, equalize)
+        return TownSource(max_width, equalize)
     if image.is_dir():
         raise DatasetError(f"{image} is a folder; name one image: synthetic:IMAGE")
     return FileSource(image.absolute(), max_width, equalize)

@@ -140,10 +140,10 @@ class Verdict:
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
-    """One way to look for a model, and by what factor it must beat how many shuffled sets.
+class Attempt:
+    """One RANSAC estimate, and by what factor it must beat how many shuffled sets.
 
-    Without shuffles, chance is not asked about.
+    Without shuffles there is no test against chance.
     """
 
     sampling: str
@@ -153,23 +153,23 @@ class Look:
     shuffles: int = 0
 
 
-def looks(protocol: MeasurementProtocol, geometry: Geometry) -> tuple[Look, ...]:
-    """The ways to look for a model, in order; the next one is tried where one finds chance."""
+def attempts(protocol: MeasurementProtocol, geometry: Geometry) -> tuple[Attempt, ...]:
+    """The attempts in order; the next one is made where one does not beat chance."""
     settings, seed, chance = protocol.verification, protocol.seed, protocol.chance
     uniform = magsac_parameters(settings, seed=seed)
     if chance is None:
-        return (Look("uniform", cv2.findFundamentalMat, uniform),)
+        return (Attempt("uniform", cv2.findFundamentalMat, uniform),)
     guided = magsac_parameters(settings, guided=True, seed=seed)
     found = (
-        Look("uniform", cv2.findFundamentalMat, uniform, chance.factor, chance.shuffles),
-        Look("guided", cv2.findFundamentalMat, guided, chance.guided_factor, chance.shuffles),
+        Attempt("uniform", cv2.findFundamentalMat, uniform, chance.factor, chance.shuffles),
+        Attempt("guided", cv2.findFundamentalMat, guided, chance.guided_factor, chance.shuffles),
     )
     if geometry != "homography":
         return found
     longer = replace(settings, max_iterations=chance.homography_iterations)
     last = magsac_parameters(longer, guided=True, seed=seed)
     factor = chance.homography_factor
-    return (*found, Look("homography", cv2.findHomography, last, factor, chance.shuffles))
+    return (*found, Attempt("homography", cv2.findHomography, last, factor, chance.shuffles))
 
 
 class Verifier:
@@ -186,7 +186,7 @@ class Verifier:
     def __init__(self, protocol: MeasurementProtocol, geometry: Geometry, clock: Clock) -> None:
         self._protocol = protocol
         self._clock = clock
-        self._looks = looks(protocol, geometry)
+        self._attempts = attempts(protocol, geometry)
 
     def verify(self, points_1: Float32Array, points_2: Float32Array, order: IndexArray) -> Verdict:
         """Estimate and judge a model.
@@ -201,7 +201,7 @@ class Verifier:
         Returns
         -------
         Verdict
-            Of the first look that beats chance, else of the very first; with the time of all.
+            Of the first attempt that beats chance, else of the very first; with the time of all.
 
         Raises
         ------
@@ -209,8 +209,8 @@ class Verifier:
             If OpenCV refuses the points.
         """
         verdicts: list[Verdict] = []
-        for look in self._looks:
-            verdicts.append(self._look(look, points_1, points_2, order))
+        for attempt in self._attempts:
+            verdicts.append(self._run(attempt, points_1, points_2, order))
             if verdicts[-1].passed:
                 break
         chosen = verdicts[-1] if verdicts[-1].passed else verdicts[0]
@@ -224,9 +224,9 @@ class Verifier:
     ) -> Model:
         """A homography, with the sampling that found the model of the same matches."""
         if sampling != "uniform":
-            last = self._looks[-1]
-            return self._look(replace(last, shuffles=0), points_1, points_2, order).model
-        return estimate_homography(points_1, points_2, self._looks[0].parameters)
+            last = self._attempts[-1]
+            return self._run(replace(last, shuffles=0), points_1, points_2, order).model
+        return estimate_homography(points_1, points_2, self._attempts[0].parameters)
 
     def pose_parameters(self, sampling: str) -> tuple[Any, bool]:
         """OpenCV's parameters for a pose, and whether they want the best matches first."""
@@ -234,32 +234,32 @@ class Verifier:
         closer = replace(protocol.verification, threshold=POSE_THRESHOLD)
         return magsac_parameters(closer, guided=guided, seed=protocol.seed), guided
 
-    def _look(
-        self, look: Look, points_1: Float32Array, points_2: Float32Array, order: IndexArray
+    def _run(
+        self, attempt: Attempt, points_1: Float32Array, points_2: Float32Array, order: IndexArray
     ) -> Verdict:
         count = len(points_1)
-        if look.sampling != "uniform":
+        if attempt.sampling != "uniform":
             points_1, points_2 = points_1[order], points_2[order]
         raw, time = self._clock.time(
-            lambda: _estimate(look.find, points_1, points_2, look.parameters)
+            lambda: _estimate(attempt.find, points_1, points_2, attempt.parameters)
         )
         model = _checked(*raw, count)
-        counts = self._shuffled_counts(look, points_1, points_2)
-        passed = model.matrix is not None and model.count > look.factor * max(counts, default=0)
-        if look.sampling != "uniform":
+        counts = self._shuffled_counts(attempt, points_1, points_2)
+        passed = model.matrix is not None and model.count > attempt.factor * max(counts, default=0)
+        if attempt.sampling != "uniform":
             inliers = np.zeros(count, bool)
             inliers[order] = model.inliers
             model = Model(model.matrix, inliers)
         mean, largest = (float(np.mean(counts)), max(counts)) if counts else (None, None)
-        return Verdict(model, look.sampling, mean, largest, passed, time)
+        return Verdict(model, attempt.sampling, mean, largest, passed, time)
 
     def _shuffled_counts(
-        self, look: Look, points_1: Float32Array, points_2: Float32Array
+        self, attempt: Attempt, points_1: Float32Array, points_2: Float32Array
     ) -> list[int]:
         counts = []
-        for shuffle in range(look.shuffles):
+        for shuffle in range(attempt.shuffles):
             generator = np.random.default_rng((self._protocol.seed, shuffle))
             shuffled = points_2[generator.permutation(len(points_2))]
-            raw = _estimate(look.find, points_1, shuffled, look.parameters)
+            raw = _estimate(attempt.find, points_1, shuffled, attempt.parameters)
             counts.append(_checked(*raw, len(points_1)).count)
         return counts

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from aerocues.errors import ScoreError
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings
-from aerocues.tuning.arena import Arena, Cell
+from aerocues.tuning.criteria_evaluator import Cell, CriteriaEvaluator
 from aerocues.tuning.layout import KIND, features, spread_order
 from aerocues.tuning.scales import Array, Mask, Scales
 from aerocues.tuning.surrogate import Surrogate, fit
@@ -44,7 +44,7 @@ class RaceSettings:
     Parameters
     ----------
     budget : float
-        Seconds of the arena.
+        Seconds, as the evaluator counts them.
     seed : int
     sure : float
         Probability of the leader at which the race ends, once the leader was measured on 5 pairs
@@ -130,16 +130,16 @@ class RaceOutcome:
 
 
 def race(
-    arena: Arena,
+    evaluator: CriteriaEvaluator,
     settings: RaceSettings,
     told: Callable[[Round], None] | None = None,
     clock: Callable[[], float] = time.monotonic,
 ) -> RaceOutcome:
-    """Run a race; the same arena and seed give the same answer.
+    """Run a race; the same evaluator and seed give the same answer.
 
     Parameters
     ----------
-    arena : Arena
+    evaluator : CriteriaEvaluator
     settings : RaceSettings
     told : callable, optional
         Told of each round.
@@ -151,27 +151,27 @@ def race(
     ScoreError
         If there is nothing to choose from, or nothing that was looked at succeeded.
     """
-    if len(arena.alternatives) < 2 or not len(arena.blocks):
+    if len(evaluator.alternatives) < 2 or not len(evaluator.blocks):
         raise ScoreError("a race needs two alternatives and a pair; give more")
-    return _Race(arena, settings, told or (lambda _: None), clock).run()
+    return _Race(evaluator, settings, told or (lambda _: None), clock).run()
 
 
 class _Race:
     def __init__(
         self,
-        arena: Arena,
+        evaluator: CriteriaEvaluator,
         settings: RaceSettings,
         told: Callable[[Round], None],
         clock: Callable[[], float],
     ) -> None:
-        self._arena, self._settings, self._told, self._clock = arena, settings, told, clock
+        self._evaluator, self._settings, self._told, self._clock = evaluator, settings, told, clock
         self._rng = np.random.default_rng(settings.seed)
-        shape = (len(arena.alternatives), len(arena.blocks))
+        shape = (len(evaluator.alternatives), len(evaluator.blocks))
         self._known = np.zeros(shape, np.bool_)
-        self._values = np.full((*shape, len(arena.criteria)), np.nan)
-        self._is_cost = np.array([each.better == "lower" for each in arena.criteria])
-        self._features, self._groups = features(arena.components)
-        self._order = spread_order(arena.blocks, self._rng)
+        self._values = np.full((*shape, len(evaluator.criteria)), np.nan)
+        self._is_cost = np.array([each.better == "lower" for each in evaluator.criteria])
+        self._features, self._groups = features(evaluator.components)
+        self._order = spread_order(evaluator.blocks, self._rng)
         self._rounds: list[Round] = []
         self._draw_seconds = _DRAW_SECONDS * (self._values.size + self._features.size)
 
@@ -198,12 +198,12 @@ class _Race:
             self._measure(cells)
 
     def _tell(self, leader: int, chance: float, contenders: int) -> None:
-        name, spent = self._arena.alternatives[leader], self._arena.spent
+        name, spent = self._evaluator.alternatives[leader], self._evaluator.spent
         self._rounds.append(Round(spent, int(self._known.sum()), contenders, name, chance))
         self._told(self._rounds[-1])
 
     def _ended(self, leader: int, chance: float, interest: Array, *, more: bool) -> Ended | None:
-        if self._arena.spent >= self._settings.budget:
+        if self._evaluator.spent >= self._settings.budget:
             return "budget"
         if not more:
             return "measured"
@@ -225,8 +225,8 @@ class _Race:
 
         What two methods make of each other cannot be told from what they do with others.
         """
-        order = np.argsort(self._arena.predicted_seconds, kind="stable")
-        components = self._arena.components
+        order = np.argsort(self._evaluator.predicted_seconds, kind="stable")
+        components = self._evaluator.components
         labels = list(zip(*(components[name] for name in KIND if name in components), strict=True))
         of_each: dict[object, int] = {}
         for each in order:
@@ -236,8 +236,8 @@ class _Race:
     def _look_at_blocks(self) -> list[Cell]:
         """The cheapest alternatives on a pair of each block."""
         count = max(round(self._settings.cheapest * len(self._known)), 2)
-        cheapest = np.argsort(self._arena.predicted_seconds, kind="stable")[:count]
-        blocks = len(np.unique(self._arena.blocks))
+        cheapest = np.argsort(self._evaluator.predicted_seconds, kind="stable")[:count]
+        blocks = len(np.unique(self._evaluator.blocks))
         pairs = self._order[: max(min(blocks, _MOST_BLOCKS), _FEWEST_PAIRS)]
         cells = [(int(a), int(p)) for p in pairs for a in cheapest]
         return [cell for cell in cells if not self._known[cell]]
@@ -245,10 +245,10 @@ class _Race:
     def _measure(self, cells: Sequence[Cell], limit: float = np.inf) -> None:
         limit = min(limit, self._settings.budget)
         for start in range(0, len(cells), self._settings.batch):
-            if start and self._arena.spent >= limit:
+            if start and self._evaluator.spent >= limit:
                 return
             batch = cells[start : start + self._settings.batch]
-            for (alternative, pair), values in self._arena.measure(batch, self._keep()).items():
+            for (alternative, pair), values in self._evaluator.measure(batch, self._keep()).items():
                 self._values[alternative, pair] = values
                 self._known[alternative, pair] = True
 
@@ -267,15 +267,17 @@ class _Race:
             )
         scales = Scales.of(measured, self._is_cost)
         stretched = scales.stretch(self._values)
-        blocks = self._arena.blocks
+        blocks = self._evaluator.blocks
         return fit(stretched, self._known, self._features, self._groups, blocks), scales
 
     def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
         """Scores (A,) expected, and (draws, A) of drawn tables."""
-        settings, arena = self._settings, self._arena
+        settings, evaluator = self._settings, self._evaluator
         began = self._clock()
         whole = scales.shrink(surrogate.expected)
-        value = Valuation(whole, arena.criteria, arena.blocks, settings.score, settings.objective)
+        value = Valuation(
+            whole, evaluator.criteria, evaluator.blocks, settings.score, settings.objective
+        )
         drawn = []
         for _ in range(draws):
             other = scales.shrink(surrogate.draw(self._rng))
@@ -286,7 +288,7 @@ class _Race:
     def _next(self, interest: Array) -> list[Cell]:
         """The next pair of those that may win, the cheaper and less measured ones first."""
         counts = self._known.sum(axis=1)
-        seconds = np.maximum(self._arena.predicted_seconds, 1e-9)
+        seconds = np.maximum(self._evaluator.predicted_seconds, 1e-9)
         worth = interest / np.sqrt((counts + 1.0) * seconds)
         chosen: list[Cell] = []
         for alternative in np.argsort(-worth, kind="stable"):

@@ -23,11 +23,12 @@ from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import Objective, objective_named
 from aerocues.scoring.settings import ScorePreset, preset_named
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.device import Device
-from aerocues.tuning.image_arena import ImageArena
+from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.race import RaceOutcome, RaceSettings, Round, race
+from aerocues.tuning.race_ranking import race_ranking
 from aerocues.tuning.representative import (
     FEWEST_PAIRS,
     MOST_PAIRS,
@@ -37,7 +38,6 @@ from aerocues.tuning.representative import (
     spread_pairs,
 )
 from aerocues.tuning.session import Session
-from aerocues.tuning.standing import standing
 
 if TYPE_CHECKING:
     import polars as pl
@@ -202,27 +202,27 @@ def recommend(
     store = Store.create(Path(output))
     engine_here = local_engine(limits or Limits(), "estimated")
     with store.writing(), engine_here.standing(context) as engine:
-        benches = _benches(context, chosen, store, parts, follower.hashing)
-        journal = Journal.read(store.folder, _key(benches, chosen, options), options.budget)
+        evaluators = _evaluators(context, chosen, store, parts, follower.hashing)
+        journal = Journal.read(store.folder, _key(evaluators, chosen, options), options.budget)
         session = Session(journal, began=began, watch=follower.working)
         follower.looking(len(pairs))
-        with engine_here.standing(benches.looking.context) as other:
-            eyes = engine if benches.looking is benches.racing else other
-            seen = look_for_overlap(benches.looking, eyes, pairs, session, options.seed)
+        with engine_here.standing(evaluators.overlap.context) as other:
+            own = engine if evaluators.overlap is evaluators.race else other
+            seen = look_for_overlap(evaluators.overlap, own, pairs, session, options.seed)
         follower.racing(len(chosen), len(seen.overlapping))
         scoring = preset_named("default" if parts.chance_test else "thesis")
         criteria = criteria_named(objective.criteria(scoring.criteria))
-        arena = ImageArena(
-            benches.racing, engine, chosen, seen.overlapping, criteria, session, options.device
+        evaluator = ImageEvaluator(
+            evaluators.race, engine, chosen, seen.overlapping, criteria, session, options.device
         )
-        outcome = race(arena, options.settings(objective, scoring), follower.round)
+        outcome = race(evaluator, options.settings(objective, scoring), follower.round)
     return Recommendation(
         part,
         seen,
         len(dataset.pairs),
         objective,
         outcome,
-        standing(benches.racing, chosen, seen.overlapping, outcome, options.device),
+        race_ranking(evaluators.race, chosen, seen.overlapping, outcome, options.device),
         len(chosen),
         int(outcome.known.any(axis=1).sum()),
         store.folder,
@@ -250,25 +250,25 @@ def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[
 
 
 @dataclass(frozen=True)
-class _Benches:
-    """Where it is seen which images overlap, and where is raced: one and the same, mostly."""
+class _Evaluators:
+    """Of overlap, and of the race: the same one unless the preset has no test against chance."""
 
-    looking: Bench
-    racing: Bench
+    overlap: PairEvaluator
+    race: PairEvaluator
 
 
-def _benches(
+def _evaluators(
     context: Context,
     chosen: Sequence[Combination],
     store: Store,
     preset: Preset,
     hashing: Callable[[int, int], None],
-) -> _Benches:
+) -> _Evaluators:
     """Whether images overlap is always tested against chance, whatever the preset says."""
     if context.protocol.chance is not None:
         asked = list(dict.fromkeys([*chosen, *probes()]))
-        bench = Bench(context, asked, store, preset, hashing)
-        return _Benches(bench, bench)
+        evaluator = PairEvaluator(context, asked, store, preset, hashing)
+        return _Evaluators(evaluator, evaluator)
     tested = replace(preset, chance_test=True)
     looking = make_context(
         context.dataset,
@@ -278,17 +278,17 @@ def _benches(
         limit=context.protocol.limit,
     )
     # What is opened last is what the folder is about.
-    first = Bench(looking, probes(), store, tested, hashing)
-    return _Benches(first, Bench(context, chosen, store, preset, hashing))
+    first = PairEvaluator(looking, probes(), store, tested, hashing)
+    return _Evaluators(first, PairEvaluator(context, chosen, store, preset, hashing))
 
 
-def _key(benches: _Benches, chosen: Sequence[Combination], options: RaceOptions) -> str:
+def _key(evaluators: _Evaluators, chosen: Sequence[Combination], options: RaceOptions) -> str:
     """What the decisions depend on besides measurements; not the budget, which may be raised.
 
     The keys of rows tell of images, parameters and protocol.
     """
     device = asdict(options.device) if options.device else None
-    both = dict.fromkeys((benches.looking, benches.racing))
-    rows = [[row.pair, row.row_key] for bench in both for row in bench.plan.rows]
+    both = dict.fromkeys((evaluators.overlap, evaluators.race))
+    rows = [[row.pair, row.row_key] for evaluator in both for row in evaluator.plan.rows]
     names = [str(each) for each in chosen]
     return content_hash([rows, names, options.objective, options.sure, options.seed, device])

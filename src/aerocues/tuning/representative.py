@@ -11,8 +11,8 @@ from aerocues.datasets.dataset import Pair
 from aerocues.errors import DatasetError
 from aerocues.evaluation.engine import Engine
 from aerocues.methods.combination import Combination
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.layout import blocks_of, spread_order
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.session import Session
 
 MOST_PAIRS = 24
@@ -80,7 +80,7 @@ def probes() -> list[Combination]:
 
 
 def look_for_overlap(
-    bench: Bench, engine: Engine, pairs: Sequence[Pair], session: Session, seed: int = 0
+    evaluator: PairEvaluator, engine: Engine, pairs: Sequence[Pair], session: Session, seed: int = 0
 ) -> Seen:
     """Tell which pairs show the same things: some probe finds a model that is no chance.
 
@@ -89,7 +89,7 @@ def look_for_overlap(
 
     Parameters
     ----------
-    bench : Bench
+    evaluator : PairEvaluator
         Whose protocol tests against chance.
     engine : Engine
     pairs : sequence of Pair
@@ -105,7 +105,7 @@ def look_for_overlap(
     """
     order = spread_order(blocks_of(pairs), np.random.default_rng(seed))
     spread = [pairs[place].index for place in order]
-    look = _Look(bench, engine, session)
+    look = _Look(evaluator, engine, session)
     for start, end in ((0, FIRST), (FIRST, SECOND), (SECOND, len(spread))):
         look.at(spread[start:end])
     seen = Seen(
@@ -121,12 +121,12 @@ def look_for_overlap(
             f"no two images that show the same things were found in time, and "
             f"{len(seen.others)} of {len(pairs)} pairs were looked at"
         )
-    raise DatasetError(_why_none(bench, seen.others))
+    raise DatasetError(_why_none(evaluator, seen.others))
 
 
 @dataclass
 class _Look:
-    bench: Bench
+    evaluator: PairEvaluator
     engine: Engine
     session: Session
     overlapping: set[int] = field(default_factory=set)
@@ -141,12 +141,12 @@ class _Look:
         self.others |= set(left) - self.unseen
 
     def _without_model(self, pairs: Sequence[int], probe: Combination) -> list[int]:
-        asked = [(pair, probe) for pair in pairs if self.bench.possible((pair, probe))]
+        asked = [(pair, probe) for pair in pairs if self.evaluator.possible((pair, probe))]
         if not asked:
             return list(pairs)
         until = self._share() * self.session.budget
-        missing = self.session.measure(self.bench, self.engine, asked, until=until)
-        late = {pair for pair, _ in asked if self.bench.row_key((pair, probe)) in missing}
+        missing = self.session.measure(self.evaluator, self.engine, asked, until=until)
+        late = {pair for pair, _ in asked if self.evaluator.row_key((pair, probe)) in missing}
         found = {pair for pair, _ in asked if pair not in late and self._is_ok(pair, probe)}
         self.unseen |= late
         self.overlapping |= found
@@ -154,15 +154,15 @@ class _Look:
         return [pair for pair in pairs if pair not in found]
 
     def _is_ok(self, pair: int, probe: Combination) -> bool:
-        row = self.bench.row((pair, probe))
+        row = self.evaluator.row((pair, probe))
         return row is not None and row["status"] == "ok"
 
     def _share(self) -> float:
         return LOOKING if len(self.overlapping) >= FEWEST_PAIRS else SEARCHING
 
 
-def _why_none(bench: Bench, pairs: Sequence[int]) -> str:
-    rows = [bench.row((pair, probe)) for pair in pairs for probe in probes()]
+def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
+    rows = [evaluator.row((pair, probe)) for pair in pairs for probe in probes()]
     statuses = [str(row["status"]) for row in rows if row is not None]
     messages = [str(row["message"]) for row in rows if row is not None and row["message"]]
     if statuses and all(status == "no_keypoints" for status in statuses):

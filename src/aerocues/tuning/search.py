@@ -1,4 +1,4 @@
-"""Searches the settings of one subject on training pairs, and judges the best on others."""
+"""Searches a space of settings on training pairs, and validates the best on other pairs."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 
 from aerocues.evaluation.engine import Activity, Engine
 from aerocues.results.metrics import Row
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.grids import Setting
-from aerocues.tuning.image_arena import criterion_values, rows_frame
+from aerocues.tuning.image_evaluator import criterion_values, rows_frame
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.scales import Array
+from aerocues.tuning.search_objective import SearchObjective, mean_gain, threshold_objective
+from aerocues.tuning.search_spaces import SearchSpace
 from aerocues.tuning.splits import Split
-from aerocues.tuning.subjects import Subject
-from aerocues.tuning.yardstick import Yardstick, mean_gain, of_threshold
 
 # Larger grids are halved: all candidates on a part of the pairs, the better ones on the rest.
 LARGE_GRID = 9
@@ -52,7 +52,7 @@ class Finding:
 
     Parameters
     ----------
-    subject : Subject
+    space : SearchSpace
     tried : int
         Candidates, the default among them.
     best : mapping
@@ -70,7 +70,7 @@ class Finding:
         None for the default.
     """
 
-    subject: Subject
+    space: SearchSpace
     tried: int
     best: Setting
     gain: float
@@ -84,21 +84,21 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Field:
+class TuningDataset:
     """A data set that is searched on."""
 
-    bench: Bench
+    evaluator: PairEvaluator
     engine: Engine
     split: Split
 
 
 class Search:
-    """Searches subjects one after the other.
+    """Searches one space after the other.
 
     Parameters
     ----------
-    fields : sequence of Field
-    yardstick : Yardstick
+    datasets : sequence of TuningDataset
+    objective : SearchObjective
     seed : int
     deadline : float
         By `time.monotonic`; what is not finished then stays at its default.
@@ -108,125 +108,129 @@ class Search:
 
     def __init__(
         self,
-        fields: Sequence[Field],
-        yardstick: Yardstick,
+        datasets: Sequence[TuningDataset],
+        objective: SearchObjective,
         seed: int,
         deadline: float = float("inf"),
         watch: Callable[[Sequence[Activity]], None] = lambda _: None,
     ) -> None:
-        self._fields, self._yardstick, self._seed = fields, yardstick, seed
+        self._datasets, self._objective, self._seed = datasets, objective, seed
         self._deadline, self._watch = deadline, watch
 
-    def run(self, subject: Subject) -> Finding:
-        """Search one subject."""
-        yardstick = of_threshold() if subject.kind == "threshold" else self._yardstick
-        training, judging = self._pairs(subject, "training"), self._pairs(subject, "validation")
-        if subject.kind == "threshold" and not (training and judging):
-            return _kept(subject, 0, "no ground truth to judge thresholds by")
+    def run(self, space: SearchSpace) -> Finding:
+        """Search one space."""
+        objective = threshold_objective() if space.kind == "threshold" else self._objective
+        training, judging = self._pairs(space, "training"), self._pairs(space, "validation")
+        if space.kind == "threshold" and not (training and judging):
+            return _kept(space, 0, "no ground truth to judge thresholds by")
         if len(judging) < FEWEST_TO_JUDGE:
-            return _kept(subject, 0, f"fewer than {FEWEST_TO_JUDGE} pairs to judge by")
-        candidates = list(range(len(subject.settings)))
+            return _kept(space, 0, f"fewer than {FEWEST_TO_JUDGE} pairs to judge by")
+        candidates = list(range(len(space.settings)))
         if len(candidates) > LARGE_GRID:
             part = training[: max(round(FIRST_PART * len(training)), FEWEST_PAIRS)]
-            scores = yardstick.scores(self._values(subject, candidates, part, yardstick))
+            scores = objective.scores(self._values(space, candidates, part, objective))
             count = max(round(KEPT * len(candidates)), FEWEST_KEPT)
             kept = [int(each) for each in np.argsort(-scores, kind="stable")[:count]]
             candidates = sorted({0, *kept})
-        values = self._values(subject, candidates, training, yardstick)
+        values = self._values(space, candidates, training, objective)
         if time.monotonic() >= self._deadline:
-            return _kept(subject, len(subject.settings), "time was up")
+            return _kept(space, len(space.settings), "time was up")
         if np.isnan(values).all():
-            return _kept(subject, len(subject.settings), "everything failed")
-        best = candidates[int(np.argmax(yardstick.scores(values)))]
+            return _kept(space, len(space.settings), "everything failed")
+        best = candidates[int(np.argmax(objective.scores(values)))]
         if not best:
-            return _kept(subject, len(subject.settings), "the default is the best")
-        return self._judged(subject, best, judging, values, yardstick)
+            return _kept(space, len(space.settings), "the default is the best")
+        return self._judged(space, best, judging, values, objective)
 
     def _judged(
         self,
-        subject: Subject,
+        space: SearchSpace,
         best: int,
         pairs: Sequence[tuple[int, int]],
         training: Array,
-        yardstick: Yardstick,
+        objective: SearchObjective,
     ) -> Finding:
-        values = self._values(subject, [0, best], pairs, yardstick)
-        setting, tried = subject.settings[best], len(subject.settings)
+        values = self._values(space, [0, best], pairs, objective)
+        setting, tried = space.settings[best], len(space.settings)
         if time.monotonic() >= self._deadline:
-            return _kept(subject, tried, "time was up")
-        first, second = yardstick.on_others(training, values)
+            return _kept(space, tried, "time was up")
+        first, second = objective.on_others(training, values)
         scenes = [self._scene(each) for each in pairs]
         gain, low, high = mean_gain(second - first, scenes)
-        default, tuned = (self._figures(subject, each, pairs) for each in (0, best))
+        default, tuned = (self._figures(space, each, pairs) for each in (0, best))
         why_not = ""
         if low <= 0:
             why_not = "the gain is not sure on validation pairs"
-        elif gain < yardstick.least_gain(first):
+        elif gain < objective.least_gain(first):
             why_not = "the gain is too small to matter"
         judged_by = JudgedBy(len(pairs), len(set(scenes)))
         pays, figures = not why_not, (gain, low, high, default, tuned)
-        return Finding(subject, tried, setting, *figures, pays, why_not, judged_by)
+        return Finding(space, tried, setting, *figures, pays, why_not, judged_by)
 
-    def _pairs(self, subject: Subject, side: str) -> list[tuple[int, int]]:
-        """Field and number of each pair that can serve, the data sets and scenes mixed."""
+    def _pairs(self, space: SearchSpace, side: str) -> list[tuple[int, int]]:
+        """Position of the dataset and number of each usable pair, in random order."""
         pairs = [
             (number, pair)
-            for number, field in enumerate(self._fields)
-            for pair in getattr(field.split, side)
+            for number, dataset in enumerate(self._datasets)
+            for pair in getattr(dataset.split, side)
         ]
         order = np.random.default_rng(self._seed).permutation(len(pairs))
         mixed = [pairs[place] for place in order]
-        return [each for each in mixed if subject.kind != "threshold" or self._has_truth(each)]
+        return [each for each in mixed if space.kind != "threshold" or self._has_truth(each)]
 
     def _scene(self, pair: tuple[int, int]) -> tuple[int, str]:
-        return pair[0], self._fields[pair[0]].bench.context.dataset.pair(pair[1]).sequence
+        return pair[0], self._datasets[pair[0]].evaluator.context.dataset.pair(pair[1]).sequence
 
     def _has_truth(self, pair: tuple[int, int]) -> bool:
-        dataset = self._fields[pair[0]].bench.context.dataset
+        dataset = self._datasets[pair[0]].evaluator.context.dataset
         images = dataset.pair(pair[1])
         return images.homography is not None or dataset.true_views(images) is not None
 
     def _rows(
-        self, subject: Subject, candidates: Sequence[int], pairs: Sequence[tuple[int, int]]
+        self, space: SearchSpace, candidates: Sequence[int], pairs: Sequence[tuple[int, int]]
     ) -> list[Row | None]:
         """Rows of each candidate on each pair, candidate after candidate."""
-        named = [subject.variant(candidate) for candidate in candidates]
-        for number, field in enumerate(self._fields):
+        named = [space.variant(candidate) for candidate in candidates]
+        for number, dataset in enumerate(self._datasets):
             asked = [
                 (pair, each)
                 for place, pair in pairs
                 if place == number
                 for each in named
-                if field.bench.possible((pair, each))
+                if dataset.evaluator.possible((pair, each))
             ]
-            field.bench.measure(asked, field.engine, deadline=self._deadline, watch=self._watch)
+            dataset.evaluator.measure(
+                asked, dataset.engine, deadline=self._deadline, watch=self._watch
+            )
         return [
-            self._fields[place].bench.row((pair, each)) for each in named for place, pair in pairs
+            self._datasets[place].evaluator.row((pair, each))
+            for each in named
+            for place, pair in pairs
         ]
 
     def _values(
         self,
-        subject: Subject,
+        space: SearchSpace,
         candidates: Sequence[int],
         pairs: Sequence[tuple[int, int]],
-        yardstick: Yardstick,
+        objective: SearchObjective,
     ) -> Array:
         """(A, P, C) values; NaN where a candidate failed or was not measured."""
-        rows = self._rows(subject, candidates, pairs)
-        values = np.full((len(rows), len(yardstick.criteria)), np.nan)
+        rows = self._rows(space, candidates, pairs)
+        values = np.full((len(rows), len(objective.criteria)), np.nan)
         known = [place for place, row in enumerate(rows) if row is not None]
         if known:
             values[known] = criterion_values(
-                [row for row in rows if row is not None], yardstick.criteria
+                [row for row in rows if row is not None], objective.criteria
             )
         return values.reshape(len(candidates), len(pairs), -1)
 
     def _figures(
-        self, subject: Subject, candidate: int, pairs: Sequence[tuple[int, int]]
+        self, space: SearchSpace, candidate: int, pairs: Sequence[tuple[int, int]]
     ) -> Figures:
         import polars as pl
 
-        rows = [row for row in self._rows(subject, [candidate], pairs) if row is not None]
+        rows = [row for row in self._rows(space, [candidate], pairs) if row is not None]
         table = rows_frame(rows)
         ok = pl.col("status") == "ok"
 
@@ -243,5 +247,5 @@ class Search:
         return Figures(*row)
 
 
-def _kept(subject: Subject, tried: int, why_not: str) -> Finding:
-    return Finding(subject, tried, {}, 0.0, 0.0, 0.0, None, None, pays=False, why_not=why_not)
+def _kept(space: SearchSpace, tried: int, why_not: str) -> Finding:
+    return Finding(space, tried, {}, 0.0, 0.0, 0.0, None, None, pays=False, why_not=why_not)

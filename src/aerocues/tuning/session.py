@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 from aerocues.errors import SelectionError
 from aerocues.evaluation.engine import Activity, Engine
-from aerocues.tuning.bench import Bench, Measurement
 from aerocues.tuning.journal import Journal, Step
+from aerocues.tuning.pair_evaluator import Measurement, PairEvaluator
 
 # Less than this much more seldom helps where a budget was too small.
 MORE = 3.0
@@ -48,7 +48,7 @@ class Session:
 
     def measure(
         self,
-        bench: Bench,
+        evaluator: PairEvaluator,
         engine: Engine,
         asked: Sequence[Measurement],
         *,
@@ -59,7 +59,7 @@ class Session:
 
         Parameters
         ----------
-        bench : Bench
+        evaluator : PairEvaluator
         engine : Engine
         asked : sequence of Measurement
         until : float
@@ -67,17 +67,19 @@ class Session:
         keep : float
             Seconds of the budget that are kept for what follows the last step.
         """
-        keys = [bench.row_key(each) for each in asked]
-        there = [key for key, each in zip(keys, asked, strict=True) if bench.row(each) is not None]
+        keys = [evaluator.row_key(each) for each in asked]
+        there = [
+            key for key, each in zip(keys, asked, strict=True) if evaluator.row(each) is not None
+        ]
         step = self._journal.replay(keys, there)
         if step is None:
-            step = self._work(bench, engine, asked, min(until, self.budget - keep), keep)
+            step = self._work(evaluator, engine, asked, min(until, self.budget - keep), keep)
         self.spent = step.spent + step.kept
         return frozenset(step.missing)
 
     def _work(
         self,
-        bench: Bench,
+        evaluator: PairEvaluator,
         engine: Engine,
         asked: Sequence[Measurement],
         until: float,
@@ -85,14 +87,16 @@ class Session:
     ) -> Step:
         finished = False
         try:
-            bench.measure(asked, engine, deadline=self._began + until, watch=self._watch)
+            evaluator.measure(asked, engine, deadline=self._began + until, watch=self._watch)
             finished = True
         finally:
             spent = self._clock() - self._began
             if not finished:
                 self._journal.interrupt(spent)
-        keys = [bench.row_key(each) for each in asked]
-        missing = [key for key, each in zip(keys, asked, strict=True) if bench.row(each) is None]
+        keys = [evaluator.row_key(each) for each in asked]
+        missing = [
+            key for key, each in zip(keys, asked, strict=True) if evaluator.row(each) is None
+        ]
         return self._journal.add(keys, spent, keep, missing)
 
     def too_small(self, why: str) -> SelectionError:

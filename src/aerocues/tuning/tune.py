@@ -23,11 +23,11 @@ from aerocues.methods.presets import Preset, preset_named
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.results.store import Store
 from aerocues.results.versions import machine_name, software_versions
-from aerocues.tuning.bench import Bench
-from aerocues.tuning.search import Field, Finding, Search
+from aerocues.tuning.pair_evaluator import PairEvaluator
+from aerocues.tuning.search import Finding, Search, TuningDataset
+from aerocues.tuning.search_objective import CUES, search_objective
+from aerocues.tuning.search_spaces import SearchSpace, search_spaces_named
 from aerocues.tuning.splits import Split, given_split, split_pairs
-from aerocues.tuning.subjects import Subject, subjects_named
-from aerocues.tuning.yardstick import CUES, yardstick
 
 PAIRS = 16
 
@@ -38,7 +38,7 @@ class Listener:
     def hashing(self, done: int, total: int) -> None:
         """`done` of `total` images have been read."""
 
-    def begins(self, subject: Subject, number: int, total: int) -> None:
+    def begins(self, space: SearchSpace, number: int, total: int) -> None:
         """A search begins."""
 
     def found(self, finding: Finding) -> None:
@@ -96,7 +96,7 @@ def tune(
 ) -> Tuned:
     """Search parameters and write those that pay as a preset.
 
-    Each subject is searched with everything else at its default: all settings of its grid on
+    Each space is searched with everything else at its default: all settings of its grid on
     training pairs (of a large grid, the better third after a third of the pairs), then the best
     against the default on validation pairs of other scenes. It is kept if the 95 % interval of its
     gain lies above 0.
@@ -104,7 +104,7 @@ def tune(
     Parameters
     ----------
     names : sequence of str
-        See `subjects.subjects_named`.
+        See `search_spaces.search_spaces_named`.
     datasets : sequence of Dataset
     output : path
         File of the preset.
@@ -127,8 +127,9 @@ def tune(
     """
     began = time.monotonic()
     options, listener = options or TuneOptions(), listener or Listener()
-    file, methods, objective = Path(output), installed_methods(), yardstick(options.objective)
-    subjects = subjects_named(names, methods, grid)
+    file, methods = Path(output), installed_methods()
+    objective = search_objective(options.objective)
+    spaces = search_spaces_named(names, methods, grid)
     every = _named_apart([*datasets, *validation])
     datasets, validation = every[: len(datasets)], every[len(datasets) :]
     place_for_preset(file)
@@ -141,33 +142,33 @@ def tune(
     folder = Path(results) if results else file.with_name(f"{file.stem}-search")
     store = Store.create(folder)
     with store.writing(), contextlib.ExitStack() as engines:
-        fields = []
+        searched = []
         for dataset, split in zip(every, splits, strict=True):
-            context = _context(_part(dataset, split), base, subjects, options)
+            context = _context(_part(dataset, split), base, spaces, options)
             asked = dict.fromkeys(
-                subject.variant(number)
-                for subject in subjects
-                for number in range(len(subject.settings))
+                space.variant(number) for space in spaces for number in range(len(space.settings))
             )
-            bench = Bench(context, list(asked), store, base, listener.hashing)
+            evaluator = PairEvaluator(context, list(asked), store, base, listener.hashing)
             engine = local_engine(limits or Limits(), "estimated")
-            fields.append(Field(bench, engines.enter_context(engine.standing(context)), split))
+            searched.append(
+                TuningDataset(evaluator, engines.enter_context(engine.standing(context)), split)
+            )
         search = Search(
-            fields,
+            searched,
             objective,
             options.seed,
             began + options.budget,
             listener.working,
         )
         findings = []
-        for number, subject in enumerate(subjects, start=1):
-            listener.begins(subject, number, len(subjects))
-            findings.append(search.run(subject))
+        for number, space in enumerate(spaces, start=1):
+            listener.begins(space, number, len(spaces))
+            findings.append(search.run(space))
             listener.found(findings[-1])
     preset = Preset(file.stem, "parameters found by aerocues tune", chance_test=True)
     for finding in findings:
         if finding.pays:
-            preset = finding.subject.applied(preset, finding.best, methods)
+            preset = finding.space.applied(preset, finding.best, methods)
     preset.check(methods.detectors, methods.descriptors)
     write_preset(file, preset, _made(every, splits, options, findings))
     return Tuned(preset, findings, splits, folder)
@@ -205,7 +206,7 @@ def _part(dataset: Dataset, split: Split) -> Dataset:
 
 
 def _context(
-    dataset: Dataset, base: Preset, subjects: Sequence[Subject], options: TuneOptions
+    dataset: Dataset, base: Preset, spaces: Sequence[SearchSpace], options: TuneOptions
 ) -> Context:
     """What the workers need, with every candidate as a method of its own."""
     context = make_context(
@@ -213,9 +214,9 @@ def _context(
     )
     methods = installed_methods()
     thresholds: dict[str, float] = {}
-    for subject in subjects:
-        methods = subject.added(methods)
-        thresholds.update(subject.thresholds())
+    for space in spaces:
+        methods = space.added(methods)
+        thresholds.update(space.thresholds())
     return replace(
         context,
         methods=options.limit.limited(methods),
@@ -248,8 +249,8 @@ def _made(
         ],
         "searches": [
             {
-                "subject": finding.subject.name,
-                "judged_in": str(finding.subject.combination),
+                "search_space": finding.space.name,
+                "judged_in": str(finding.space.combination),
                 "tried": finding.tried,
                 "best": dict(finding.best),
                 "gain": finding.gain,

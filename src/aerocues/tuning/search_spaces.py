@@ -1,4 +1,4 @@
-"""What is searched at once: a method's parameters, or the inlier threshold of two methods."""
+"""Search spaces: the parameters of a method, or the inlier threshold of two methods."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ EVERYTHING = "ALL"
 
 
 @dataclass(frozen=True)
-class Subject:
-    """One search.
+class SearchSpace:
+    """The candidate settings of one search.
 
     Parameters
     ----------
     kind : {"detector", "descriptor", "pair", "threshold"}
         ``pair``: a descriptor on the keypoints of one detector.
     combination : Combination
-        What it is judged in.
+        In which the candidates are evaluated.
     settings : tuple of mapping
         What differs from the default in each candidate; the first is the default.
     """
@@ -49,7 +49,7 @@ class Subject:
             "threshold": f"threshold of {detector}-{descriptor}",
         }[self.kind]
 
-    def clashes(self, other: Subject) -> bool:
+    def clashes(self, other: SearchSpace) -> bool:
         """Whether a preset would mix what both find in a setting that nobody measured."""
         kinds = {self.kind, other.kind}
         same_method = self.name == other.name or (
@@ -77,7 +77,7 @@ class Subject:
         return replace(found, descriptor=f"{found.descriptor}{mark}{number}")
 
     def added(self, methods: Methods) -> Methods:
-        """The methods, and the variants of this subject beside them."""
+        """The methods, with the variants of this space added."""
         detectors, descriptors = dict(methods.detectors), dict(methods.descriptors)
         for number, setting in enumerate(self.settings[1:], start=1):
             named = self.variant(number)
@@ -104,7 +104,7 @@ class Subject:
         }
 
     def applied(self, preset: Preset, setting: Setting, methods: Methods) -> Preset:
-        """The preset with a setting of this subject."""
+        """The preset with a setting of this space."""
         detector, descriptor = self.combination.detector, self.combination.descriptor
         both = f"{detector}-{descriptor}"
         if self.kind == "threshold":
@@ -131,18 +131,18 @@ def _with(
     return {**group, name: {**group.get(name, {}), **setting}}
 
 
-def subjects_named(
+def search_spaces_named(
     names: Sequence[str], methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
-) -> list[Subject]:
-    """What several texts ask to be searched, each once; see `subjects_of`.
+) -> list[SearchSpace]:
+    """What several texts ask to be searched, each once; see `search_spaces_of`.
 
     Raises
     ------
     SelectionError
         If there is nothing to search, or two searches would set the same parameters.
     """
-    found: list[Subject] = []
-    for each in (subject for name in names for subject in subjects_of(name, methods, grid)):
+    found: list[SearchSpace] = []
+    for each in (space for name in names for space in search_spaces_of(name, methods, grid)):
         if each in found:
             continue
         for other in found:
@@ -158,9 +158,9 @@ def subjects_named(
     return found
 
 
-def subjects_of(
+def search_spaces_of(
     text: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
-) -> list[Subject]:
+) -> list[SearchSpace]:
     """What a text asks to be searched.
 
     Parameters
@@ -211,18 +211,18 @@ def _rows(wanted: str) -> list[Grid]:
     return rows
 
 
-def _of_grid(row: Grid, methods: Methods) -> list[Subject]:
+def _of_grid(row: Grid, methods: Methods) -> list[SearchSpace]:
     if row.kind == "detector":
         default = methods.detectors[row.method].parameters
         combination = _judged(row.method, row.partner, methods)
-        return [Subject("detector", combination, tuple(settings_of(row.values, default)))]
+        return [SearchSpace("detector", combination, tuple(settings_of(row.values, default)))]
     default = methods.descriptors[row.method].parameters
     combination = _judged(row.partner, row.method, methods)
-    found = [Subject("descriptor", combination, tuple(settings_of(row.values, default)))]
+    found = [SearchSpace("descriptor", combination, tuple(settings_of(row.values, default)))]
     if row.on_each_detector:
         settings = tuple(settings_of(row.on_each_detector, default))
         found += [
-            Subject("pair", own, settings)
+            SearchSpace("pair", own, settings)
             for detector in methods.detectors
             if why_incompatible(own := _judged(detector, row.method, methods), methods) is None
         ]
@@ -234,20 +234,20 @@ def _judged(detector: str, descriptor: str, methods: Methods) -> Combination:
     return Combination(detector, descriptor, norm, MATCHER)
 
 
-def _own_grid(wanted: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]]) -> Subject:
+def _own_grid(wanted: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]]) -> SearchSpace:
     kind, _, name = wanted.rpartition(":")
     if kind in ("", "DETECTOR") and name in methods.detectors:
         row = next((g for g in GRIDS if (g.kind, g.method) == ("detector", name)), None)
         combination = _judged(name, row.partner if row else "BRISK", methods)
         _check(grid, methods.detectors[name].parameters, name)
         settings = settings_of(grid, methods.detectors[name].parameters)
-        return Subject("detector", combination, tuple(settings))
+        return SearchSpace("detector", combination, tuple(settings))
     if kind in ("", "DESCRIPTOR") and name in methods.descriptors:
         row = next((g for g in GRIDS if (g.kind, g.method) == ("descriptor", name)), None)
         combination = _judged(row.partner if row else "ORB", name, methods)
         _check(grid, methods.descriptors[name].parameters, name)
         settings = settings_of(grid, methods.descriptors[name].parameters)
-        return Subject("descriptor", combination, tuple(settings))
+        return SearchSpace("descriptor", combination, tuple(settings))
     raise SelectionError(f"there is no method {wanted}; see 'aerocues methods'")
 
 
@@ -259,7 +259,7 @@ def _check(names: Mapping[str, object], known: Mapping[str, object], method: str
             )
 
 
-def _of_combination(combination: Combination, methods: Methods) -> list[Subject]:
+def _of_combination(combination: Combination, methods: Methods) -> list[SearchSpace]:
     methods.require(combination)
     reason = why_incompatible(combination, methods)
     if reason is not None:
@@ -268,11 +268,13 @@ def _of_combination(combination: Combination, methods: Methods) -> list[Subject]
     for row in GRIDS:
         if (row.kind, row.method) == ("detector", combination.detector):
             default = methods.detectors[row.method].parameters
-            found.append(Subject("detector", combination, tuple(settings_of(row.values, default))))
+            found.append(
+                SearchSpace("detector", combination, tuple(settings_of(row.values, default)))
+            )
         if (row.kind, row.method) == ("descriptor", combination.descriptor):
             default = methods.descriptors[row.method].parameters
             values = {**row.values, **row.on_each_detector}
-            found.append(Subject("pair", combination, tuple(settings_of(values, default))))
+            found.append(SearchSpace("pair", combination, tuple(settings_of(values, default))))
     verification = 3.0
     others: Sequence[Setting] = [{THRESHOLD: t} for t in THRESHOLDS if t != verification]
-    return [*found, Subject("threshold", combination, ({}, *others))]
+    return [*found, SearchSpace("threshold", combination, ({}, *others))]

@@ -1,4 +1,4 @@
-"""How combinations stand after a race: what was measured of each, in the order of their scores."""
+"""The ranking after a race, with what was measured of each combination."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 from aerocues.methods.combination import Combination
 from aerocues.results.medians import METHODS
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.device import Device
-from aerocues.tuning.image_arena import rows_frame
+from aerocues.tuning.image_evaluator import rows_frame
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.race import RaceOutcome
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 MEDIANS = ("precision_beyond_chance", "precision", "excess_inliers", "inliers")
 
 
-def standing(
-    bench: Bench,
+def race_ranking(
+    evaluator: PairEvaluator,
     combinations: Sequence[Combination],
     pairs: Sequence[int],
     outcome: RaceOutcome,
@@ -33,7 +33,7 @@ def standing(
     rows = [
         row
         for a, p in np.argwhere(outcome.known)
-        if (row := bench.row((pairs[p], combinations[a]))) is not None
+        if (row := evaluator.row((pairs[p], combinations[a]))) is not None
     ]
     table = rows_frame([device.there(row) if device else row for row in rows])
     scores = pl.DataFrame(

@@ -14,7 +14,7 @@ from aerocues.methods.making import make_descriptor, make_detector
 from aerocues.methods.presets import Preset
 from aerocues.methods.registry import opencv_methods
 from aerocues.tuning.grids import GRIDS, read_grid, settings_of
-from aerocues.tuning.subjects import Subject, subjects_named, subjects_of
+from aerocues.tuning.search_spaces import SearchSpace, search_spaces_named, search_spaces_of
 
 METHODS = opencv_methods()
 EMPTY = Preset("p", "", chance_test=True)
@@ -34,12 +34,12 @@ def test_there_is_a_grid_for_every_method_whose_parameters_matter_alone() -> Non
     assert descriptors == set(METHODS.descriptors) - {"SIFT", "ORB"}
 
 
-@pytest.mark.parametrize("subject", subjects_of("all", METHODS), ids=lambda each: each.name)
-def test_every_candidate_can_be_made(subject: Subject) -> None:
-    assert why_incompatible(subject.combination, METHODS) is None
-    assert len(subject.settings) > 1
-    added = subject.added(METHODS)
-    names = [subject.variant(number) for number in range(len(subject.settings))]
+@pytest.mark.parametrize("space", search_spaces_of("all", METHODS), ids=lambda each: each.name)
+def test_every_candidate_can_be_made(space: SearchSpace) -> None:
+    assert why_incompatible(space.combination, METHODS) is None
+    assert len(space.settings) > 1
+    added = space.added(METHODS)
+    names = [space.variant(number) for number in range(len(space.settings))]
     assert len(set(names)) == len(names)
     for named in names:
         assert Combination.parse(str(named)) == named
@@ -48,22 +48,22 @@ def test_every_candidate_can_be_made(subject: Subject) -> None:
 
 
 def test_a_detector_takes_along_what_its_own_descriptor_shares() -> None:
-    [subject] = subjects_of("detector:orb", METHODS)
+    [space] = search_spaces_of("detector:orb", METHODS)
     setting = {"nlevels": 8}
-    number = subject.settings.index(setting)
-    named = subject.variant(number)
-    added = subject.added(METHODS)
+    number = space.settings.index(setting)
+    named = space.variant(number)
+    added = space.added(METHODS)
     assert added.detectors[named.detector].parameters["nlevels"] == 8
     assert added.descriptors[named.descriptor].parameters["nlevels"] == 8
     assert added.detectors["ORB"].parameters["nlevels"] == 6
-    preset = subject.applied(EMPTY, setting, METHODS)
+    preset = space.applied(EMPTY, setting, METHODS)
     assert preset.detectors == {"ORB": setting}
     assert preset.on_detectors == {"ORB-ORB": setting}
     assert preset.descriptors == {}
 
 
 def test_a_descriptor_is_searched_by_itself_and_on_each_detector() -> None:
-    first, *others = subjects_of("beblid", METHODS)
+    first, *others = search_spaces_of("beblid", METHODS)
     assert (first.kind, first.name) == ("descriptor", "descriptor BEBLID")
     assert [each.combination.detector for each in others] == list(METHODS.detectors)
     assert others[2].name == "BEBLID on ORB"
@@ -74,7 +74,7 @@ def test_a_descriptor_is_searched_by_itself_and_on_each_detector() -> None:
 
 
 def test_a_combination_is_searched_part_by_part() -> None:
-    detector, pair, threshold = subjects_of("ORB-BEBLID-HAM-BF", METHODS)
+    detector, pair, threshold = search_spaces_of("ORB-BEBLID-HAM-BF", METHODS)
     assert [each.kind for each in (detector, pair, threshold)] == ["detector", "pair", "threshold"]
     assert detector.applied(EMPTY, {"nlevels": 8}, METHODS).on_detectors == {}
     number = threshold.settings.index({"threshold": 1.5})
@@ -88,12 +88,14 @@ def test_a_combination_is_searched_part_by_part() -> None:
 def test_values_of_ones_own_are_tried(tmp_path: Path) -> None:
     file = tmp_path / "grid.json"
     file.write_text(json.dumps({"threshold": [5, 15], "nonmaxSuppression": [True]}))
-    [subject] = subjects_of("FAST", METHODS, read_grid(file))
-    assert subject.settings == ({}, {"threshold": 15})
-    [descriptor] = subjects_of("descriptor:ORB", METHODS, {"WTA_K": (2,), "patchSize": (25, 31)})
+    [space] = search_spaces_of("FAST", METHODS, read_grid(file))
+    assert space.settings == ({}, {"threshold": 15})
+    [descriptor] = search_spaces_of(
+        "descriptor:ORB", METHODS, {"WTA_K": (2,), "patchSize": (25, 31)}
+    )
     assert (descriptor.kind, descriptor.settings) == ("descriptor", ({}, {"patchSize": 25}))
     with pytest.raises(SelectionError, match="FAST has no parameter size; it has threshold"):
-        subjects_of("FAST", METHODS, {"size": (1,)})
+        search_spaces_of("FAST", METHODS, {"size": (1,)})
     for content in ("{", "[]", "{}", '{"a": 5}', '{"a": [[5]]}'):
         file.write_text(content)
         with pytest.raises(SelectionError, match="grid"):
@@ -111,18 +113,18 @@ def test_values_of_ones_own_are_tried(tmp_path: Path) -> None:
 )
 def test_what_cannot_be_searched_is_told(text: str, words: str) -> None:
     with pytest.raises(SelectionError, match=words):
-        subjects_of(text, METHODS)
+        search_spaces_of(text, METHODS)
 
 
 @pytest.mark.parametrize("text", ["ORB-BEBLID-HAM-BF", "all", "detector:all"])
 def test_values_of_ones_own_are_for_one_method(text: str) -> None:
     with pytest.raises(SelectionError, match=f"--grid holds values for one method, and {text} is"):
-        subjects_of(text, METHODS, {"nlevels": (6,)})
+        search_spaces_of(text, METHODS, {"nlevels": (6,)})
 
 
 def test_a_grid_is_for_the_kind_that_is_named() -> None:
     with pytest.raises(SelectionError, match="no method DETECTOR:LATCH"):
-        subjects_of("detector:LATCH", METHODS, {"bytes": (2, 32)})
+        search_spaces_of("detector:LATCH", METHODS, {"bytes": (2, 32)})
 
 
 @pytest.mark.parametrize(
@@ -137,15 +139,15 @@ def test_a_grid_is_for_the_kind_that_is_named() -> None:
 )
 def test_what_would_be_mixed_without_being_measured_is_refused(names: tuple[str, ...]) -> None:
     with pytest.raises(SelectionError, match="set the same parameters; tune one at a time"):
-        subjects_named(names, METHODS)
+        search_spaces_named(names, METHODS)
 
 
 def test_what_is_named_twice_is_searched_once() -> None:
-    once = subjects_named(["all"], METHODS)
-    assert subjects_named(["ORB", "all", "detector:orb"], METHODS) == [
-        *subjects_of("ORB", METHODS),
+    once = search_spaces_named(["all"], METHODS)
+    assert search_spaces_named(["ORB", "all", "detector:orb"], METHODS) == [
+        *search_spaces_of("ORB", METHODS),
         *(each for each in once if each.name != "detector ORB"),
     ]
-    assert len(subjects_named(["ORB-BEBLID-HAM-BF", "AGAST-BRIEF-HAM-BF"], METHODS)) == 6
+    assert len(search_spaces_named(["ORB-BEBLID-HAM-BF", "AGAST-BRIEF-HAM-BF"], METHODS)) == 6
     with pytest.raises(SelectionError, match="no method is named"):
-        subjects_named([], METHODS)
+        search_spaces_named([], METHODS)

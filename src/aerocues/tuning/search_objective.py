@@ -1,4 +1,4 @@
-"""By what candidates of a search are judged: CUES, or one criterion."""
+"""The objective of a search: CUES, or one criterion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ GEOMETRY = Criterion(
 
 
 @dataclass(frozen=True)
-class Yardstick:
+class SearchObjective:
     """Criteria and how they become one score.
 
     Parameters
@@ -80,7 +80,7 @@ class Yardstick:
         return np.where(np.isnan(values), np.where(costs, most, 0.0), values)
 
 
-def yardstick(name: str) -> Yardstick:
+def search_objective(name: str) -> SearchObjective:
     """CUES with the default preset of scoring, or a criterion by its name.
 
     Raises
@@ -91,19 +91,19 @@ def yardstick(name: str) -> Yardstick:
     if name.lower() == CUES:
         preset = preset_named("default")
         criteria = tuple(criteria_named(preset.criteria))
-        return Yardstick(criteria, OBJECTIVES["balanced"], preset.settings)
+        return SearchObjective(criteria, OBJECTIVES["balanced"], preset.settings)
     [criterion] = criteria_named([name])
     if criterion.reconstruction:
         raise ScoreError(
             f"{criterion.name} is a figure of 3D models, which a search does not make; choose one "
             "of image pairs, such as excess_inliers"
         )
-    return Yardstick((criterion,))
+    return SearchObjective((criterion,))
 
 
-def of_threshold() -> Yardstick:
+def threshold_objective() -> SearchObjective:
     """What inlier thresholds are judged by."""
-    return Yardstick((GEOMETRY,))
+    return SearchObjective((GEOMETRY,))
 
 
 def mean_gain(gains: Array, scenes: Sequence[Hashable]) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""What a race asks of the place where it is run: images, or measurements that were made already."""
+"""What a race needs of an evaluator: of images, or of measurements made before."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from aerocues.scoring.criteria import Criterion
 from aerocues.tuning.scales import Array
 
 Cell = tuple[int, int]
-"""An alternative, and the pair that it is measured on."""
+"""Number of an alternative, and of the pair that it is evaluated on."""
 
 
-class Arena(Protocol):
-    """Where combinations compete."""
+class CriteriaEvaluator(Protocol):
+    """Gives the criterion values of alternatives on pairs, and what that costs."""
 
     alternatives: Sequence[str]
     components: Mapping[str, Sequence[str]]

@@ -1,4 +1,4 @@
-"""Measurements that were made already, as an arena to race in."""
+"""Measurements that were made before, as an evaluator: for tests and benchmarks of the race."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.scoring.criteria import Criterion
-from aerocues.tuning.arena import Cell
+from aerocues.tuning.criteria_evaluator import Cell
 from aerocues.tuning.scales import Array
 
 
-class ReplayArena:
-    """Hands out stored values, and counts what they would have cost.
+class ReplayEvaluator:
+    """A `CriteriaEvaluator` that gives stored values and counts what they would have cost.
 
     What a detector does to an image, and a descriptor to its keypoints, is paid once a pair, as
     runs do it once; the rest of an alternative's time is its own.

@@ -1,4 +1,4 @@
-"""Measures single combinations on single pairs into a results folder, each once."""
+"""Evaluates single combinations on single pairs into a results folder, each once."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class _TimeIsUpError(Exception):
     """Ends what the workers are at."""
 
 
-class Bench:
-    """Measures what is asked for, and remembers it.
+class PairEvaluator:
+    """Measures combinations on pairs, and keeps the rows.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class Bench:
         measurements : iterable of Measurement
         engine : Engine
         deadline : float
-            By the clock of the bench.
+            By the clock of the evaluator.
         watch : callable
             Told what the workers are doing.
 

@@ -1,4 +1,4 @@
-"""Images as an arena: combinations are measured on pairs, until time is up."""
+"""Evaluates the criteria of combinations on pairs of images, within a budget of time."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from aerocues.results.metrics import Row
 from aerocues.scoring.combinations import SUCCESS
 from aerocues.scoring.criteria import Criterion
 from aerocues.scoring.long_form import values_of
-from aerocues.tuning.arena import Cell
-from aerocues.tuning.bench import Bench
 from aerocues.tuning.costs import Costs
+from aerocues.tuning.criteria_evaluator import Cell
 from aerocues.tuning.device import Device
 from aerocues.tuning.layout import blocks_of
+from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.scales import Array
 from aerocues.tuning.session import Session
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 COMPONENTS = ("detector", "descriptor", "norm", "matcher")
 
 
-class ImageArena:
-    """Measures combinations on the pairs of a bench; see `arena.Arena`.
+class ImageEvaluator:
+    """A `CriteriaEvaluator` of combinations on pairs of images.
 
     Parameters
     ----------
-    bench : Bench
+    evaluator : PairEvaluator
     engine : Engine
     combinations : sequence of Combination
     pairs : sequence of int
@@ -46,7 +46,7 @@ class ImageArena:
 
     def __init__(
         self,
-        bench: Bench,
+        evaluator: PairEvaluator,
         engine: Engine,
         combinations: Sequence[Combination],
         pairs: Sequence[int],
@@ -58,11 +58,11 @@ class ImageArena:
         self.components: Mapping[str, Sequence[str]] = {
             name: [getattr(each, name) for each in combinations] for name in COMPONENTS
         }
-        self.blocks = blocks_of([bench.context.dataset.pair(pair) for pair in pairs])
+        self.blocks = blocks_of([evaluator.context.dataset.pair(pair) for pair in pairs])
         self.criteria = criteria
-        self._bench, self._engine, self._session = bench, engine, session
+        self._evaluator, self._engine, self._session = evaluator, engine, session
         self._combinations, self._pairs, self._device = combinations, pairs, device
-        self._costs = Costs(bench.context.methods, combinations)
+        self._costs = Costs(evaluator.context.methods, combinations)
         self._has_measured = False
         self.predicted_seconds = self._costs.predicted()
 
@@ -72,7 +72,7 @@ class ImageArena:
         return self._session.spent
 
     def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> dict[Cell, Array]:
-        """Values of what could be measured in time; see `arena.Arena`.
+        """Values of what could be measured in time; see `CriteriaEvaluator`.
 
         Raises
         ------
@@ -80,12 +80,12 @@ class ImageArena:
             If time is up before anything is measured.
         """
         measurements = [(self._pairs[p], self._combinations[a]) for a, p in cells]
-        asked = [each for each in measurements if self._bench.possible(each)]
-        missing = self._session.measure(self._bench, self._engine, asked, keep=keep)
+        asked = [each for each in measurements if self._evaluator.possible(each)]
+        missing = self._session.measure(self._evaluator, self._engine, asked, keep=keep)
         rows = {
-            cell: self._bench.row(each)
+            cell: self._evaluator.row(each)
             for cell, each in zip(cells, measurements, strict=True)
-            if self._bench.possible(each) and self._bench.row_key(each) not in missing
+            if self._evaluator.possible(each) and self._evaluator.row_key(each) not in missing
         }
         self._has_measured |= bool(rows)
         if missing and not self._has_measured:

@@ -4,21 +4,21 @@ import numpy as np
 import pytest
 
 from aerocues.errors import ScoreError
-from aerocues.tuning.yardstick import mean_gain, yardstick
+from aerocues.tuning.search_objective import mean_gain, search_objective
 
 
 def test_one_criterion_counts_by_its_mean_and_a_failure_by_the_worst() -> None:
     values = np.array([[[10.0], [20.0]], [[np.nan], [40.0]]])
-    inliers = yardstick("excess_inliers")
+    inliers = search_objective("excess_inliers")
     np.testing.assert_allclose(inliers.scores(values), [15.0, 20.0])
     np.testing.assert_allclose(inliers.on_others(values, values), [[10, 20], [0, 40]])
-    seconds = yardstick("total_seconds")
+    seconds = search_objective("total_seconds")
     np.testing.assert_allclose(seconds.scores(values), [-15.0, -40.0])
 
 
 def test_cues_ranks_what_is_better_in_everything_first() -> None:
     rng = np.random.default_rng(0)
-    cues = yardstick("cues")
+    cues = search_objective("cues")
     costs = np.array([criterion.better == "lower" for criterion in cues.criteria])
     quality = np.array([0.2, 0.8, 0.5])[:, None, None] + 0.05 * rng.random((3, 6, len(costs)))
     values = np.where(costs, 1 - quality, quality)
@@ -78,13 +78,13 @@ def test_one_scene_holds_the_level_on_its_own_pairs(pairs: int) -> None:
 
 def test_the_least_gain_of_a_criterion_is_relative() -> None:
     default = np.array([300.0, 500.0])
-    assert yardstick("excess_inliers").least_gain(default) == pytest.approx(2.0)
-    assert yardstick("total_seconds").least_gain(-default / 1000) == pytest.approx(0.002)
-    assert yardstick("cues").least_gain(np.array([0.2, 0.4])) == pytest.approx(0.005)
+    assert search_objective("excess_inliers").least_gain(default) == pytest.approx(2.0)
+    assert search_objective("total_seconds").least_gain(-default / 1000) == pytest.approx(0.002)
+    assert search_objective("cues").least_gain(np.array([0.2, 0.4])) == pytest.approx(0.005)
 
 
 def test_unknown_criteria_are_told() -> None:
     with pytest.raises(ScoreError, match="no criterion 'beauty'"):
-        yardstick("beauty")
+        search_objective("beauty")
     with pytest.raises(ScoreError, match="points_3d is a figure of 3D models"):
-        yardstick("points_3d")
+        search_objective("points_3d")

@@ -1,1 +1,0 @@
-"""The picture of a town that the package draws for itself."""
