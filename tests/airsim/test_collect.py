@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 import socket
 from collections.abc import Callable
 from dataclasses import replace
@@ -120,7 +121,7 @@ def test_a_simulator_that_stays_away_costs_nothing_that_is_finished(tmp_path: Pa
 
     with serving(simulator) as port:
         asked = replace(ASKED, port=port)
-        with pytest.raises(SimulationError, match="lost the connection to 127"):
+        with pytest.raises(SimulationError, match=r"127\.0\.0\.1"):
             collect(tmp_path, SURVEY, asked, sleep=vanish)
         assert waited == [0.5, 1.0, 2.0, 4.0, 8.0]
         simulator.gone = False
@@ -132,7 +133,7 @@ def test_no_simulator_is_told_and_nothing_is_touched(tmp_path: Path) -> None:
     with serving(Simulator()) as port:
         collect(tmp_path, SURVEY, replace(ASKED, port=port))
     other = Survey("other", SURVEY.shots[:1])
-    with pytest.raises(SimulationError, match=r"no simulator answers at 127\.0\.0\.1:"):
+    with pytest.raises(SimulationError, match=r"127\.0\.0\.1:"):
         collect(tmp_path, other, replace(ASKED, port=port))
     assert len(list(tmp_path.rglob("*.png"))) == 4
 
@@ -140,7 +141,7 @@ def test_no_simulator_is_told_and_nothing_is_touched(tmp_path: Path) -> None:
 def test_a_camera_that_does_not_move_is_found_out(tmp_path: Path) -> None:
     with (
         serving(Simulator(stuck=True)) as port,
-        pytest.raises(SimulationError, match=r"not where .*: 40 m and 90 degrees off; run the sim"),
+        pytest.raises(SimulationError, match="40 m and 90 degrees"),
     ):
         collect(tmp_path, SURVEY, replace(ASKED, port=port))
     assert not list(tmp_path.rglob("*.png"))
@@ -149,8 +150,8 @@ def test_a_camera_that_does_not_move_is_found_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("simulator", "told"),
     [
-        (Simulator(width=32, height=32), r'have 32 x 32 pixels; set "Width": 60, "Height": 40'),
-        (Simulator(fixed_fov=True), r'of 70 degrees and not 90; set "FOV_Degrees": 90'),
+        (Simulator(width=32, height=32), r'32 x 32 pixels.*"Width": 60, "Height": 40'),
+        (Simulator(fixed_fov=True), r'70 degrees .*"FOV_Degrees": 90'),
     ],
 )
 def test_settings_of_the_simulator_that_do_not_fit(
@@ -165,7 +166,7 @@ def test_a_wrong_flavour_names_the_right_one(tmp_path: Path) -> None:
     for server, asked in (("airsim", "cosys"), ("cosys", "airsim")):
         with (
             serving(Simulator(server)) as port,
-            pytest.raises(SimulationError, match=f"is no {asked}: use --flavour {server}"),
+            pytest.raises(SimulationError, match=f"--flavour {server}"),
         ):
             collect(tmp_path, SURVEY, replace(ASKED, port=port, flavour=asked))
 
@@ -174,7 +175,7 @@ def test_what_answers_but_is_no_simulator(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port = listening.getsockname()[1]
         asked = replace(ASKED, port=port, timeout=0.2)
-        with pytest.raises(SimulationError, match="no simulator answers"):
+        with pytest.raises(SimulationError, match=r"127\.0\.0\.1"):
             collect(tmp_path, SURVEY, asked)
 
 
@@ -184,9 +185,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         words = ["airsim", "collect", "-o", str(tmp_path), "--survey", "mini", "--port", str(port)]
         assert exit_code([*words, "--size", "60x40"]) == 0
         told = capsys.readouterr().out
-        assert f"6 images collected in {tmp_path}; measure them with: aerocues run airsim:" in told
+        assert re.search(rf"6 images .*{tmp_path}.*aerocues run airsim:", told)
         assert exit_code([*words, "--size", "50x40"]) == 2
-        assert "ask for --size 60x40" in capsys.readouterr().err
+        assert "--size 60x40" in capsys.readouterr().err
     assert exit_code(words) == 2
     told = capsys.readouterr().err
     assert told.startswith("error: no simulator answers")

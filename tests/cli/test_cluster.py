@@ -26,10 +26,10 @@ def output(tmp_path: Path) -> Path:
     ("options", "words"),
     [
         (("--engine", "dask"), "--scheduler tcp://HOST:8786"),
-        (("--scheduler", "tcp://host:8786"), "add --engine dask"),
-        (("--resource", "board"), "add --engine dask"),
-        (("--engine", "dask", "--scheduler", "tcp://h:1", "--workers", "2"), "leave --workers out"),
-        (("--engine", "slurm"), "'slurm' is not one of 'local', 'dask'"),
+        (("--scheduler", "tcp://host:8786"), "--engine dask"),
+        (("--resource", "board"), "--engine dask"),
+        (("--engine", "dask", "--scheduler", "tcp://h:1", "--workers", "2"), "--workers"),
+        (("--engine", "slurm"), "'slurm'"),
     ],
 )
 def test_options_that_do_not_go_together(
@@ -51,7 +51,9 @@ def test_no_scheduler_is_told_in_one_line(
     pytest.importorskip("distributed")
     answer = call("run", photos, "-o", output, *RUN, "--engine", "dask", "--scheduler", address)
     assert answer.code == 2
-    assert answer.err.startswith(f"error: no Dask scheduler answers at {address}; start one with")
+    assert answer.err.startswith("error: ")
+    assert address in answer.err
+    assert "dask scheduler" in answer.err
     assert answer.err.count("\n") == 1
     assert not output.exists()
 

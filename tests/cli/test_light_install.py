@@ -86,7 +86,7 @@ def board(light: Light, photos: Path, tmp_path_factory: pytest.TempPathFactory) 
     words = ("-o", made.folder, "--combinations", COMBINATIONS, "--timing", "exclusive")
     measured = light("run", photos, *words)
     assert measured.returncode == 0, measured.stderr
-    assert "rank combination" in measured.stdout
+    assert "SIFT-SIFT-L2-FLANN" in measured.stdout
     packed = light("results", made.folder, "--pack", made.packed)
     assert packed.returncode == 0, packed.stderr
     return made
@@ -94,7 +94,7 @@ def board(light: Light, photos: Path, tmp_path_factory: pytest.TempPathFactory) 
 
 def test_the_heavy_packages_are_out_of_reach(light: Light) -> None:
     refused = light("methods", "why", "ORB-ORB-HAM-EXACT")
-    assert "EXACT is unavailable: it needs numba" in refused.stdout
+    assert "numba" in refused.stdout
 
 
 def test_a_board_measures_and_the_rest_of_the_world_compares(
@@ -117,7 +117,7 @@ def test_a_board_measures_and_the_rest_of_the_world_compares(
 def test_the_rows_are_those_of_a_full_install(call: Call, board: Board, photos: Path) -> None:
     again = call("run", photos, "-o", board.folder, "--combinations", COMBINATIONS)
     assert again.code == 0
-    assert "nothing to measure: all 12 rows are there already" in again.err
+    assert re.search(r"all 12 rows", again.err)
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ def test_every_method_is_listed_with_its_source(call: Call) -> None:
     assert facts["detectors"][0]["parameters"]["nfeatures"] == 30000
     assert [row["name"] for row in facts["norms"]] == ["L2", "HAM"]
     assert [row["name"] for row in facts["matchers"]][:2] == ["BF", "FLANN"]
-    assert f"{facts['meaningful']}  of these mean something" in text
+    assert f"{facts['meaningful']}  of these" in text
     assert all(line == line.rstrip() for line in text.splitlines())
 
 
@@ -50,7 +50,7 @@ def test_what_is_wrong_with_plug_ins_is_told_and_stops_nothing(
     assert len(problems) == 2
     text = " ".join(call("methods").out.split())
     for problem in problems:
-        assert f"Problem: {problem}" in text
+        assert problem in text
     assert call("methods", "why", "orb-orb-ham-bf").out == "ORB-ORB-HAM-BF runs\n"
 
 
@@ -58,12 +58,12 @@ def test_what_is_wrong_with_plug_ins_is_told_and_stops_nothing(
     ("combination", "answer"),
     [
         ("sift-sift-l2-bf", "SIFT-SIFT-L2-BF runs\n"),
-        ("SIFT-ORB-HAM-BF", "SIFT-ORB-HAM-BF cannot run: the ORB descriptor reads SIFT's packed"),
-        ("ORB-KAZE-L2-BF", "ORB-KAZE-L2-BF cannot run: the KAZE descriptor needs"),
-        ("SIFT-SIFT-HAM-BF", "SIFT-SIFT-HAM-BF cannot run: the Hamming norm compares bits"),
-        ("ORB-ORB-L2-FLANN", "ORB-ORB-L2-FLANN cannot run: FLANN under L2 needs float32"),
-        ("ORB-ORB-L2-BF", "ORB-ORB-L2-BF runs but means nothing: ORB descriptors are strings"),
-        ("ORB-LUCID-HAM-BF", "ORB-LUCID-HAM-BF runs; with gray images it is left out"),
+        ("SIFT-ORB-HAM-BF", "SIFT-ORB-HAM-BF cannot run: "),
+        ("ORB-KAZE-L2-BF", "ORB-KAZE-L2-BF cannot run: "),
+        ("SIFT-SIFT-HAM-BF", "SIFT-SIFT-HAM-BF cannot run: "),
+        ("ORB-ORB-L2-FLANN", "ORB-ORB-L2-FLANN cannot run: "),
+        ("ORB-ORB-L2-BF", "ORB-ORB-L2-BF runs but "),
+        ("ORB-LUCID-HAM-BF", "ORB-LUCID-HAM-BF runs; "),
     ],
 )
 def test_why(call: Call, combination: str, answer: str) -> None:
@@ -76,14 +76,11 @@ def test_why(call: Call, combination: str, answer: str) -> None:
 @pytest.mark.parametrize(
     ("combination", "told"),
     [
-        ("ORB-BEBLIT-HAM-BF", "there is no descriptor BEBLIT; did you mean BEBLID or TEBLID?"),
-        ("ORB-ORB-COSINE-BF", "there is no norm COSINE; known are L2, HAM"),
-        ("ORBORB", "is no combination; write DETECTOR-DESCRIPTOR-NORM-MATCHER"),
-        (
-            "sift-sift",
-            "is the beginning of SIFT-SIFT-L2-BF, SIFT-SIFT-L2-FLANN; name one",
-        ),
-        ("SIFT", "more; name one, or see all with aerocues methods list --all 'SIFT-*'"),
+        ("ORB-BEBLIT-HAM-BF", "BEBLID or TEBLID"),
+        ("ORB-ORB-COSINE-BF", "L2, HAM"),
+        ("ORBORB", "DETECTOR-DESCRIPTOR-NORM-MATCHER"),
+        ("sift-sift", "SIFT-SIFT-L2-BF, SIFT-SIFT-L2-FLANN"),
+        ("SIFT", "aerocues methods list --all 'SIFT-*'"),
     ],
 )
 def test_why_with_unknown_names(call: Call, combination: str, told: str) -> None:

@@ -35,10 +35,10 @@ def test_version(call: Call) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["nothing"], "No such command 'nothing'; see 'aerocues --help'"),
-        (["run", "photos"], "Missing option '-o' / '--output'; see 'aerocues run --help'"),
-        (["status"], "see 'aerocues status --help'"),
-        (["methods", "--nothing"], "No such option: --nothing; see 'aerocues methods --help'"),
+        (["nothing"], "'aerocues --help'"),
+        (["run", "photos"], "'aerocues run --help'"),
+        (["status"], "'aerocues status --help'"),
+        (["methods", "--nothing"], "'aerocues methods --help'"),
     ],
 )
 def test_wrong_usage_is_told_in_one_line(call: Call, words: list[str], told: str) -> None:

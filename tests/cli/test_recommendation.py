@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -52,24 +53,23 @@ def found(photos: Path, chances: Sequence[float], unseen: tuple[int, ...] = ()) 
 
 def test_the_only_one_that_succeeded_is_compared_with_nothing(photos: Path) -> None:
     words = " ".join(answer(found(photos, [1.0])).split())
-    assert "a pair; no other combination succeeded inlier ratio beyond chance 0.500 3 of" in words
+    assert "median" not in words
     several = " ".join(answer(found(photos, [0.7, 0.3])).split())
-    assert "the median of the 2 combinations that succeeded is 0" in several
+    assert re.search(r"median of the 2 combinations .* 0\b", several)
 
 
 def test_a_probability_is_of_these_pairs_and_never_certain(photos: Path) -> None:
     words = " ".join(answer(found(photos, [1.0, 0.0])).split())
-    assert (
-        "With a probability of >99% it is the best of 7 for quality and speed in balance on these "
-        "pairs: 6 measurements of 2 combinations on 3 pairs in 1 min 01 s (all that may win are "
-        "measured on all pairs)."
-    ) in words
+    assert re.search(
+        r">99%.* best of 7 .* 6 measurements of 2 combinations on 3 pairs in 1 min 01 s", words
+    )
+    assert "100%" not in words
 
 
 def test_pairs_that_there_was_no_time_for_are_told(photos: Path) -> None:
     words = " ".join(answer(found(photos, [0.6, 0.4], unseen=(2,))).split())
-    assert "2 pairs, spread evenly, stand for all 3; a larger --budget looks at more" in words
-    assert "give more images" not in words
+    assert re.search(r"\b2 pairs\b.*\b3\b.*--budget", words)
+    assert "more images" not in words
 
 
 @pytest.mark.parametrize(

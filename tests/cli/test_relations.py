@@ -34,7 +34,6 @@ def test_relations_to_models_are_told(tmp_path: Path, call: Call) -> None:
     Store.open(folder).add_reconstructions(models_of(results))
     answer = call("validate", folder)
     assert answer.code == 0
-    assert "3D models: Spearman's correlation of figures of pairs with them, over" in answer.out
     assert "points" in answer.out.split("3D models")[1]
     facts = json.loads(call("validate", folder, "--json").out)["reconstruction"]
     assert {"feature", "outcome", "pearson", "spearman"} <= set(facts[0])
@@ -44,12 +43,10 @@ def test_few_models_are_too_few_to_tell(finished: Path, tmp_path: Path, call: Ca
     folder = tmp_path / "results"
     shutil.copytree(finished, folder)
     Store.open(folder).add_reconstructions(models_of(Results(folder)))
-    told = " ".join(call("validate", folder).out.split("3D models")[1].split())
-    assert told == (
-        "4 combinations were both measured and reconstructed, too few to tell what figures of "
-        "pairs say of models; make 5 or more with 'aerocues reconstruct'"
-    )
-    assert "too few" in json.loads(call("validate", folder, "--json").out)["reconstruction"]
+    reason = json.loads(call("validate", folder, "--json").out)["reconstruction"]
+    assert reason.startswith("4 combinations")
+    assert "'aerocues reconstruct'" in reason
+    assert reason in " ".join(call("validate", folder).out.split("3D models")[1].split())
 
 
 def test_models_that_all_failed_are_left_out_of_the_score(
@@ -68,4 +65,4 @@ def test_models_that_all_failed_are_left_out_of_the_score(
     assert call("score", folder).out == before
     asked = call("score", folder, "--reconstruction")
     assert asked.code == 2
-    assert "there is no value at all for reprojection_error, points_3d" in asked.err
+    assert "reprojection_error, points_3d" in asked.err

@@ -23,8 +23,8 @@ def test_without_an_option_there_is_a_summary(call: Call, finished: Path) -> Non
     answer = call("results", finished)
     assert answer.code == 0
     assert "4 combinations on 3 pairs" in answer.out
-    assert "preset default, OpenCV" in answer.out
-    assert "--columns lists the columns" in answer.out
+    assert "preset default" in answer.out
+    assert "--columns" in answer.out
     assert "repeatability_beyond_chance" not in answer.out
 
 
@@ -62,13 +62,13 @@ def test_a_wrong_query_is_told_in_one_line(call: Call, finished: Path, query: st
 @pytest.mark.parametrize(
     ("query", "told"),
     [
-        ("DROP TABLE results", "a query begins with SELECT or WITH"),
-        ("-- SELECT\nTRUNCATE results", "a query begins with SELECT or WITH"),
-        ("WITH r AS (SELECT 1) DELETE FROM results", "the query failed"),
-        ("SELECT inlier FROM results", "there is no column inlier; did you mean inliers"),
-        ("SELECT r.inlier FROM results AS r", "there is no column inlier; did you mean inliers"),
-        ("SELECT foo FROM results", "there is no column foo; 'aerocues results RESULTS --columns'"),
-        ("SELECT inliers + detector FROM results", "arithmetic on dtypes"),
+        ("DROP TABLE results", "SELECT"),
+        ("-- SELECT\nTRUNCATE results", "SELECT"),
+        ("WITH r AS (SELECT 1) DELETE FROM results", "query"),
+        ("SELECT inlier FROM results", "inliers"),
+        ("SELECT r.inlier FROM results AS r", "inliers"),
+        ("SELECT foo FROM results", "'aerocues results RESULTS --columns'"),
+        ("SELECT inliers + detector FROM results", "dtypes"),
     ],
 )
 def test_a_query_that_does_not_read_is_told_shortly(
@@ -76,7 +76,8 @@ def test_a_query_that_does_not_read_is_told_shortly(
 ) -> None:
     answer = call("results", finished, "--sql", query)
     assert (answer.code, answer.out) == (2, "")
-    assert answer.err.startswith(f"error: {told}") or f": {told}" in answer.err
+    assert answer.err.startswith("error: ")
+    assert told in answer.err
     assert len(answer.err) < 320
     assert answer.err.count("\n") == 1
 
@@ -134,7 +135,8 @@ def test_what_cannot_be_written_is_told(call: Call, finished: Path, tmp_path: Pa
     for file in (tmp_path, tmp_path / "missing" / "rows.csv", "/proc/self/rows.csv"):
         answer = call("results", finished, "--csv", file)
         assert answer.code == 2
-        assert answer.err.startswith(f"error: cannot write {file}")
+        assert answer.err.startswith("error: ")
+        assert str(file) in answer.err
         assert answer.err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
@@ -142,7 +144,7 @@ def test_what_cannot_be_written_is_told(call: Call, finished: Path, tmp_path: Pa
 def test_two_forms_at_once_are_refused(call: Call, finished: Path) -> None:
     answer = call("results", finished, "--csv", "-", "--json")
     assert answer.code == 2
-    assert "choose one of" in answer.err
+    assert {"--csv", "--json"} <= set(re.findall(r"--\w+", answer.err))
 
 
 def test_what_csv_cannot_hold_is_told_with_the_form_that_can(
@@ -153,9 +155,7 @@ def test_what_csv_cannot_hold_is_told_with_the_form_that_can(
         answer = call("results", finished, "--sql", query, "--csv", target)
         assert answer.code == 2
         assert answer.out == ""
-        assert re.fullmatch(
-            r"error: this table cannot be written as CSV: .*; use --parquet or --json\n", answer.err
-        )
+        assert re.fullmatch(r"error: .*--parquet or --json\n", answer.err)
     assert list(tmp_path.iterdir()) == []
     for form in ("--parquet", "--csv"):
         assert call("results", finished, form, tmp_path / "rows").code == 0
@@ -187,7 +187,7 @@ def test_a_folder_is_packed_and_read_where_it_is(
     file = tmp_path / "packed.zip"
     answer = call("results", finished, "--pack", file)
     assert (answer.code, answer.out) == (0, "")
-    assert re.fullmatch(rf"12 rows packed into {file} \(.* kB\)\n", answer.err)
+    assert re.fullmatch(rf"12 rows .*{file}.*\n", answer.err)
     assert call("results", file, "--csv", "-") == call("results", finished, "--csv", "-")
     assert call("status", file) == call("status", finished)
     assert call("results", file).out == call("results", finished).out
@@ -195,9 +195,9 @@ def test_a_folder_is_packed_and_read_where_it_is(
 
 def test_what_cannot_be_packed_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
     for words, told in (
-        (("--pack", tmp_path / "p.zip", "--csv", "-"), "leave the other options out"),
-        (("--pack", "-"), "needs the name of a file"),
-        (("--pack", tmp_path), "it is a folder"),
+        (("--pack", tmp_path / "p.zip", "--csv", "-"), "--pack"),
+        (("--pack", "-"), "--pack"),
+        (("--pack", tmp_path), str(tmp_path)),
     ):
         answer = call("results", finished, *words)
         assert answer.code == 2
@@ -206,7 +206,7 @@ def test_what_cannot_be_packed_is_told(call: Call, finished: Path, tmp_path: Pat
     for command in ("results", "status"):
         answer = call(command, tmp_path / "rows.csv")
         assert answer.code == 2
-        assert re.fullmatch(r"error: .*no results folder and no packed one.*import'\n", answer.err)
+        assert re.fullmatch(r"error: .*aerocues import.*\n", answer.err)
     assert [path.name for path in tmp_path.iterdir()] == ["rows.csv"]
 
 
@@ -218,4 +218,4 @@ def test_of_a_folder_of_results_one_is_to_be_named(
     for command in ("results", "status"):
         answer = call(command, tmp_path)
         assert answer.code == 2
-        assert re.fullmatch(r"error: .*folder of results folders.*: one, two\n", answer.err)
+        assert re.fullmatch(r"error: .*one, two\n", answer.err)

@@ -43,9 +43,8 @@ def test_what_is_left_and_left_out_is_told(call: Call, finished: Path, tmp_path:
     run["exclusions"] = [{"combination": "ORB-LUCID-HAM-BF", "reason": "gray", "pairs": 3}]
     (folder / "run.json").write_text(json.dumps(run))
     answer = call("status", folder)
-    assert f"{12 - lost} of 12 rows done, {lost} left" in answer.out
+    assert answer.out.startswith(f"{12 - lost} of 12 rows done, {lost} left")
     assert "ORB-LUCID-HAM-BF on 3 pairs: gray" in answer.out
-    assert "run the same command again" in answer.out
 
 
 def test_what_was_left_out_for_one_reason_takes_one_line(
@@ -66,8 +65,8 @@ def test_what_was_left_out_for_one_reason_takes_one_line(
         {"combination": name, "reason": reason, "pairs": pairs} for name, reason, pairs in left_out
     ]
     (folder / "run.json").write_text(json.dumps(run))
-    lines = call("status", folder).out.partition("left out because of the images\n")[2]
-    assert lines.splitlines() == [
+    lines = call("status", folder).out.splitlines()
+    assert lines[-3:] == [
         "  4 combinations with LUCID on 5 pairs: gray",
         "  4 combinations with LUCID on 1 pair: gray",
         "  4 combinations (ORB-SIFT-L2-BF, SIFT-ORB-HAM-BF, KAZE-KAZE-L2-BF, ...) on 2 pairs: odd",
@@ -83,14 +82,15 @@ def test_what_is_left_of_a_packed_folder_needs_the_folder(
     shutil.copytree(finished, folder)
     min((folder / "parts").glob("*.parquet")).unlink()
     Results(folder).pack(tmp_path / "half.zip")
-    assert "unzip it and run the same command again" in call("status", tmp_path / "half.zip").out
+    assert "unzip" in call("status", tmp_path / "half.zip").out
+    assert "unzip" not in call("status", folder).out
 
 
 def test_a_folder_without_results_is_refused(call: Call, tmp_path: Path) -> None:
     for folder in (tmp_path, tmp_path / "missing"):
         answer = call("status", folder)
         assert answer.code == 2
-        assert re.fullmatch(r"error: .* is no results folder .*\n", answer.err)
+        assert re.fullmatch(rf"error: .*{folder}.*\n", answer.err)
 
 
 def test_what_is_left_to_be_timed_alone_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
@@ -101,6 +101,5 @@ def test_what_is_left_to_be_timed_alone_is_told(call: Call, finished: Path, tmp_
     for part in (folder / "parts").glob("*.parquet"):
         pl.read_parquet(part).with_columns(timing=pl.lit("estimated")).write_parquet(part)
     answer = call("status", folder)
-    assert answer.out.startswith("12 of 12 rows done, none left; 4 of them still to be timed alone")
-    assert "run the same command again" in answer.out
+    assert re.match(r"12 of 12 rows done, none left; 4 .* timed alone", answer.out)
     assert json.loads(call("status", folder, "--json").out)["untimed"] == 4

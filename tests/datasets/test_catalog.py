@@ -31,13 +31,13 @@ def test_geometry_and_number_of_pairs_agree_with_the_catalog() -> None:
 @pytest.mark.parametrize(
     ("spec", "said"),
     [
-        ("oxfrd:somewhere", r"^there is no kind of dataset oxfrd \(did you mean oxford"),
-        ("nosuch", "^there is no folder nosuch, nor a kind of dataset"),
-        ("hpatch", "did you mean hpatches"),
+        ("oxfrd:somewhere", r"\boxfrd\b.*\boxford\b"),
+        ("nosuch", "nosuch"),
+        ("hpatch", "hpatches"),
         ("/no/such/place", r"synthetic\[:IMAGE\], .*flight:DIR"),
-        ("oxford", "oxford needs a folder; write oxford:DIR"),
-        ("flight:", "flight needs a folder"),
-        ("uav:/no/such/place", "no folder /no/such/place"),
+        ("oxford", "oxford:DIR"),
+        ("flight:", "flight:DIR"),
+        ("uav:/no/such/place", "/no/such/place"),
         ("synthetic:/no/such.png", r"/no/such\.png: No such file"),
     ],
 )
@@ -52,7 +52,7 @@ def test_a_file_is_no_dataset(image_folder: Path) -> None:
 
 
 def test_options_that_make_no_sense(image_folder: Path) -> None:
-    with pytest.raises(DatasetError, match="leave --pairs out"):
+    with pytest.raises(DatasetError, match="--pairs"):
         open_dataset("synthetic", pairs="exhaustive")
     with pytest.raises(DatasetError, match="--limit 0"):
         open_dataset("synthetic", limit=0)
@@ -97,7 +97,7 @@ def test_sequences_are_globs() -> None:
     assert dataset.pair(dataset.pairs[-1].index) is dataset.pairs[-1]
     assert dataset.pairs[0].image_2 == "scale_0.50"
     assert {p.sequence for p in dataset.pairs} == {"scale", "intensity"}
-    with pytest.raises(DatasetError, match="there are: rotation, scale, intensity"):
+    with pytest.raises(DatasetError, match="rotation, scale, intensity"):
         open_dataset("synthetic", sequences=["tilt"])
 
 
@@ -108,7 +108,7 @@ def test_sequences_may_be_one_text_with_commas() -> None:
         dataset = open_dataset("synthetic", sequences=text)
         assert [p.index for p in dataset.pairs] == [p.index for p in expected.pairs]
         assert len(dataset.pairs) < 20
-    with pytest.raises(DatasetError, match="no sequence is called tilt, turn; there are"):
+    with pytest.raises(DatasetError, match="tilt, turn"):
         open_dataset("synthetic", sequences="tilt,turn")
 
 

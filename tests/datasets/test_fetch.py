@@ -189,7 +189,7 @@ def test_a_changed_archive_is_refused(fetch_here: Fetch, site: Site, tmp_path: P
     fetch_here("oxford")
     (tmp_path / "data" / "graf").rename(tmp_path / "elsewhere")
     site.files["graf.tar.gz"] = tar({"img1.ppm": b"other", "H1to2p": b"other"})
-    with pytest.raises(DatasetError, match=r"graf\.tar\.gz does not have the checksum"):
+    with pytest.raises(DatasetError, match=r"graf\.tar\.gz .*checksum"):
         fetch_here("oxford")
     assert not (tmp_path / "data" / "graf").exists()
 
@@ -202,7 +202,7 @@ def test_a_pinned_checksum_is_checked_at_once(
         "oxford", (fetching.Archive("bark", (place,)),), "H1to2p", "bark/img1.ppm"
     )
     monkeypatch.setitem(BENCHMARKS, "oxford", pinned)
-    with pytest.raises(DatasetError, match="does not have the checksum 0000"):
+    with pytest.raises(DatasetError, match="checksum 0000"):
         fetch_here("oxford")
 
 
@@ -218,16 +218,16 @@ def test_an_archive_placed_by_hand_is_used_and_kept(
     assert placed.exists()
     placed.write_bytes(b"something else")
     (data / "v_wall").rename(tmp_path / "elsewhere")
-    with pytest.raises(DatasetError, match="instead of"):
+    with pytest.raises(DatasetError, match=r"hpatches-sequences-release\.zip"):
         fetch_here("hpatches")
 
 
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"no archive at all", "is damaged"),
-        (tar({"img1.ppm": b"", "H1to2p": b""})[:-30], "is damaged"),
-        (tar({"readme.txt": b"hello"}), "holds no sequence"),
+        (b"no archive at all", r"bark\.tar\.gz"),
+        (tar({"img1.ppm": b"", "H1to2p": b""})[:-30], r"bark\.tar\.gz"),
+        (tar({"readme.txt": b"hello"}), "sequence"),
         (tar({"../../evil.txt": b"", "H1to2p": b""}), "outside"),
         (tar({"/tmp/evil.txt": b"", "H1to2p": b""}), "outside"),
         (zipped({"../evil.txt": b"", "H1to2p": b""}), "outside"),
@@ -286,12 +286,12 @@ def test_offline_says_what_to_put_where(tmp_path: Path) -> None:
 def test_what_cannot_be_fetched(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="oxford, hpatches"):
         fetch("aerial", tmp_path)
-    with pytest.raises(DatasetError, match="no web address"):
+    with pytest.raises(DatasetError, match="ftp:/x"):
         fetch("oxford", tmp_path, base_url="ftp:/x")
     file = tmp_path / "file"
     file.write_text("")
-    with pytest.raises(DatasetError, match="cannot write"):
+    with pytest.raises(DatasetError, match=str(file)):
         fetch("oxford", file, base_url="http://127.0.0.1:9")
     (tmp_path / CHECKSUMS).write_text("{}")
-    with pytest.raises(DatasetError, match="is damaged"):
+    with pytest.raises(DatasetError, match=CHECKSUMS):
         fetch("oxford", tmp_path, base_url="http://127.0.0.1:9")

@@ -58,11 +58,11 @@ def test_any_names_have_an_order(names: list[str]) -> None:
 def test_too_few_images(tmp_path: Path, image_folder: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
-    with pytest.raises(DatasetError, match="holds no images"):
+    with pytest.raises(DatasetError, match="empty"):
         open_dataset(str(empty))
     (image_folder / "img2.png").unlink()
     (image_folder / "img10.png").unlink()
-    with pytest.raises(DatasetError, match=r"one image only \(img1\.JPG\)"):
+    with pytest.raises(DatasetError, match=r"img1\.JPG"):
         open_dataset(str(image_folder))
 
 
@@ -97,9 +97,9 @@ def test_projects(tmp_path: Path, image_folder: Path) -> None:
     assert (dataset.name, len(dataset.images)) == ("uav", 6)
     (tmp_path / "lone").mkdir()
     shutil.copy(image_folder / "img2.png", tmp_path / "lone")
-    with pytest.raises(DatasetError, match="lone holds one image only"):
+    with pytest.raises(DatasetError, match="lone"):
         open_dataset(f"uav:{tmp_path}")
-    with pytest.raises(DatasetError, match="it holds images itself"):
+    with pytest.raises(DatasetError, match=str(image_folder)):
         open_dataset(f"uav:{image_folder}")
 
 
@@ -118,7 +118,7 @@ def test_a_pairs_file_names_images_of_all_projects(tmp_path: Path, image_folder:
         (2, "village", "village/img2.png", "scene/img2.png"),
     ]
     file.write_text("village/img10.png village/img1.JPG\nvillage/img3.png village/img1.JPG\n")
-    with pytest.raises(DatasetError, match=r"1 bad line: line 2: no image 'village/img3\.png'"):
+    with pytest.raises(DatasetError, match=r"line 2: .*'village/img3\.png'"):
         open_dataset(f"uav:{tmp_path}", pairs=str(file))
 
 
@@ -132,7 +132,7 @@ def test_an_empty_file_is_an_error_of_its_own_pairs(tmp_path: Path, image_folder
     for row in rows.iter_rows(named=True):
         broken = "img2.png" in (row["image_1"], row["image_2"])
         assert (row["status"] == "error") == broken
-        assert ("img2.png is not an image" in (row["message"] or "")) == broken
+        assert ("img2.png" in (row["message"] or "")) == broken
 
 
 def test_gps_pairs_from_exif(tmp_path: Path) -> None:
@@ -151,7 +151,7 @@ def test_a_pairs_file_chooses(tmp_path: Path, image_folder: Path) -> None:
     dataset = open_dataset(str(image_folder), pairs=str(file))
     assert [(p.image_1, p.image_2) for p in dataset.pairs] == [("img10.png", "img1.JPG")]
     file.write_text("img10.png img3.png\n")
-    with pytest.raises(DatasetError, match=r"line 1: no image 'img3\.png'"):
+    with pytest.raises(DatasetError, match=r"line 1: .*'img3\.png'"):
         open_dataset(str(image_folder), pairs=str(file))
 
 

@@ -36,7 +36,7 @@ def test_what_is_hidden_is_not_shared() -> None:
     roof[:, :50] = 5.0
     hidden = replace(second, truth=replace(second.truth, depth=Depth(roof)))
     assert Overlapping(0.85).pairs([first, second]) == [("0", "1")]
-    with pytest.raises(DatasetError, match=r"no two images overlap by 0\.85 to 1; give wider"):
+    with pytest.raises(DatasetError, match=r"0\.85 to 1\b"):
         Overlapping(0.85).pairs([first, hidden])
 
 
@@ -52,7 +52,7 @@ def test_views_of_the_sky_may_share_it() -> None:
 
 def test_overlap_needs_depth() -> None:
     row = [*images(0), replace(images(0, 1)[1], truth=None)]
-    with pytest.raises(DatasetError, match=r"1 has no true depth .*; use --pairs consecutive"):
+    with pytest.raises(DatasetError, match=r"\b1 .*--pairs consecutive"):
         Overlapping(0.5).pairs(row)
 
 
@@ -65,5 +65,5 @@ def test_its_text_form(text: str, limits: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("text", ["overlap:0.9-0.3", "overlap:0", "overlap:30-90"])
 def test_limits_that_make_no_sense(text: str) -> None:
-    with pytest.raises(DatasetError, match=r"give shares of an image such as 0\.3-0\.9"):
+    with pytest.raises(DatasetError, match=r"0\.3-0\.9"):
         parse_pairs(text)

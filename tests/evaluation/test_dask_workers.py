@@ -112,9 +112,9 @@ def test_a_unit_whose_workers_die_without_a_word_is_given_up(
         views, "ORB-ORB-HAM-*", tmp_path, timing="shared", engine=DaskEngine(client)
     ).table()
     assert table["status"].to_list() == ["crashed"] * 6
-    assert set(table["message"]) == {
-        f"12 Dask workers died in this pair before they told of it, the last at {ADDRESS}"
-    }
+    [message] = set(table["message"])
+    assert message.startswith("12 Dask workers ")
+    assert ADDRESS in message
     assert set(table["machine"]) == {"board"}
     # The unit of 3 pairs, each of them alone, and the two that are left of it: 3 times each.
     assert len(client.units) == 3 * 5

@@ -141,10 +141,10 @@ def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -
     kept = rows_of(first.table())
     free = shutil.disk_usage(small_disk).free
     ballast.write_bytes(b"x" * max(free - 16_000, 0))
-    with pytest.raises(StoreError, match=r"cannot write .*make room.* run the same command again"):
+    with pytest.raises(StoreError, match=str(results)):
         run(dataset, combinations, results, engine=InlineEngine())
     (small_disk / "more").write_bytes(b"x" * shutil.disk_usage(small_disk).free)
-    with pytest.raises(StoreError, match=r"cannot write .*No space left"):
+    with pytest.raises(StoreError, match=r"table\.csv.*No space left"):
         export_table(first.table(), small_disk / "table.csv", "csv")
     assert not list(results.rglob("*.tmp"))
     assert Results(results).status().planned >= 3
@@ -159,14 +159,14 @@ def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -
 
 def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path, closed_disk: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(2))
-    with pytest.raises(StoreError, match=r"cannot write to .*Read-only.*-o"):
+    with pytest.raises(StoreError, match=r"Read-only.*-o"):
         run(dataset, "ORB-ORB-HAM-BF", closed_disk / "results", engine=InlineEngine())
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder that nobody can write")
 def test_a_folder_of_the_system_is_an_error(tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(2))
-    with pytest.raises(StoreError, match="cannot write to /proc"):
+    with pytest.raises(StoreError, match="/proc"):
         run(dataset, "ORB-ORB-HAM-BF", "/proc/aerocues", engine=InlineEngine())
 
 

@@ -205,7 +205,7 @@ def test_exclusive_times_say_so_and_know_the_memory(views: Dataset, tmp_path: Pa
 
 @pytest.mark.parametrize("limits", [Limits(workers=-1), Limits(timeout=0), Limits(timeout=-3)])
 def test_limits_must_be_positive(views: Dataset, tmp_path: Path, limits: Limits) -> None:
-    with pytest.raises(SelectionError, match="must be positive"):
+    with pytest.raises(SelectionError):
         run(views, FEW, tmp_path / "r", limits=limits)
     assert not (tmp_path / "r").exists()
 

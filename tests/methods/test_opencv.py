@@ -133,15 +133,15 @@ def test_no_keypoints_give_empty_features_of_the_right_form(
 
 def test_arrays_of_unequal_length_are_refused() -> None:
     three = Keypoints.from_xy(np.zeros((3, 2)))
-    with pytest.raises(ValueError, match=r"3 keypoints need descriptors of shape \(3, D\)"):
+    with pytest.raises(ValueError, match=r"\(3, D\)"):
         Features(three, np.zeros((2, 8), np.uint8))
-    with pytest.raises(ValueError, match="size must have shape"):
+    with pytest.raises(ValueError, match=r"size .*shape"):
         replace(three, size=three.size[:2])
-    with pytest.raises(ValueError, match=r"xy must have shape \(N, 2\)"):
+    with pytest.raises(ValueError, match=r"xy .*\(N, 2\)"):
         replace(three, xy=np.zeros((3, 3), np.float32))
-    with pytest.raises(ValueError, match="distance must have shape"):
+    with pytest.raises(ValueError, match=r"distance .*shape"):
         Matches(np.zeros((2, 2), np.int32), np.zeros(1, np.float32))
-    with pytest.raises(ValueError, match="indices must have shape"):
+    with pytest.raises(ValueError, match=r"indices .*shape"):
         Matches(np.zeros((2, 3), np.int32), np.zeros(2, np.float32))
 
 

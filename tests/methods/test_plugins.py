@@ -85,12 +85,12 @@ def test_the_methods_of_opencv_stay_as_they_are(arena: Methods) -> None:
 def test_what_misses_a_dependency_is_unavailable_with_the_reason(arena: Methods) -> None:
     reason = why_unavailable(Combination.parse("NEEDY-ORB-HAM-BF"), arena)
     assert reason is not None
-    assert "NEEDY is unavailable: No module named 'package_that_nobody_has'" in reason
+    assert "No module named 'package_that_nobody_has'" in reason
     reason = why_unavailable(Combination.parse("ORB-MISTYPED-L2-BF"), arena)
     assert reason is not None
-    assert "arena.methods:Patchs does not exist" in reason
+    assert "arena.methods:Patchs" in reason
     assert not [c for c in runnable(arena) if "NEEDY" in str(c) or "MISTYPED" in str(c)]
-    with pytest.raises(SelectionError, match="NEEDY is unavailable"):
+    with pytest.raises(SelectionError, match="NEEDY"):
         select(arena, "NEEDY-ORB-HAM-BF")
 
 

@@ -25,7 +25,8 @@ def test_what_is_missing_is_unavailable_with_the_reason() -> None:
     assert methods.descriptors["ORB"].unavailable is None
     reason = methods.detectors["STAR"].unavailable
     assert reason is not None
-    assert "has no StarDetector; install opencv-contrib-python-headless" in reason
+    assert "StarDetector" in reason
+    assert "opencv-contrib-python-headless" in reason
     assert "FREAK is unavailable: this OpenCV" in explain("ORB-FREAK-HAM-BF", methods)
 
 
@@ -37,7 +38,7 @@ def test_what_is_missing_does_not_take_part() -> None:
     chosen = select(methods)
     assert len(chosen) == counts.meaningful < 340
     assert not {each.detector for each in chosen} & {"STAR", "HL", "MSD", "TBMR"}
-    with pytest.raises(SelectionError, match="STAR is unavailable: this OpenCV"):
+    with pytest.raises(SelectionError, match=r"STAR .*OpenCV"):
         select(methods, "STAR-*")
 
 

@@ -58,13 +58,13 @@ def test_parameters_of_a_descriptor_may_depend_on_the_detector(methods: Methods)
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("nonsense", r"cannot read the preset .*: it is not written as JSON \(line 1, column 1\)"),
-        ("[1]", "is no preset: it must hold an object"),
-        ('{"detector": {}}', "detector is unknown; a preset has name, title"),
-        ('{"detectors": {"ORB": 5}}', "detectors must hold methods, each with parameters"),
-        ('{"thresholds": {"ORB-ORB": -1}}', "thresholds must hold pixels"),
-        ('{"name": "thesis"}', "thesis is the name of another preset"),
-        ('{"name": "Tuned"}', "Tuned is the name of another preset"),
+        ("nonsense", r"p\.json.* JSON \(line 1, column 1\)"),
+        ("[1]", r"p\.json"),
+        ('{"detector": {}}', r"\bdetector\b.* name, title"),
+        ('{"detectors": {"ORB": 5}}', "detectors"),
+        ('{"thresholds": {"ORB-ORB": -1}}', "thresholds"),
+        ('{"name": "thesis"}', "thesis"),
+        ('{"name": "Tuned"}', "Tuned"),
     ],
 )
 def test_what_is_no_preset_is_told_in_a_line(tmp_path: Path, text: str, told: str) -> None:
@@ -77,10 +77,10 @@ def test_what_is_no_preset_is_told_in_a_line(tmp_path: Path, text: str, told: st
 @pytest.mark.parametrize(
     ("parts", "told"),
     [
-        ({"detectors": {"ORB": {"levels": 8}}}, "ORB has no parameter levels; it has nfeatures"),
-        ({"on_detectors": {"ORB-SURF": {"a": 1}}}, "the descriptor SURF, which does not exist"),
-        ({"on_detectors": {"ORB-LUCID": {"a": 1}}}, "LUCID has no parameter a; it has lucid_"),
-        ({"thresholds": {"SURF-ORB": 1.0}}, "the detector SURF, which does not exist"),
+        ({"detectors": {"ORB": {"levels": 8}}}, r"ORB .*\blevels\b.* nfeatures"),
+        ({"on_detectors": {"ORB-SURF": {"a": 1}}}, "descriptor SURF"),
+        ({"on_detectors": {"ORB-LUCID": {"a": 1}}}, r"LUCID .*\ba\b.* lucid_"),
+        ({"thresholds": {"SURF-ORB": 1.0}}, "detector SURF"),
     ],
 )
 def test_what_no_method_has_is_refused(methods: Methods, parts: dict[str, Any], told: str) -> None:

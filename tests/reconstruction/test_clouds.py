@@ -56,12 +56,12 @@ def test_a_cloud_is_read_as_it_was_written() -> None:
 
 @pytest.mark.parametrize("damage", [b"", b"nonsense", cloud(square()).content()[:400]])
 def test_a_damaged_cloud_is_named(damage: bytes) -> None:
-    with pytest.raises(StoreError, match=r"clouds/x\.npz is damaged .* again"):
+    with pytest.raises(StoreError, match=r"clouds/x\.npz"):
         read_cloud(damage, Path("clouds/x.npz"))
 
 
 def test_shapes_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"errors must have shape \(100,\), not \(3,\)"):
+    with pytest.raises(ValueError, match=r"errors .*\(100,\).*\(3,\)"):
         replace(cloud(square()), errors=np.zeros(3, np.float32))
 
 

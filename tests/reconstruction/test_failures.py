@@ -57,8 +57,8 @@ def only_row(
 @pytest.mark.parametrize(
     ("picture", "status", "message"),
     [
-        (gray, "no_features", "4 of 4 images have no keypoints"),
-        (noise, "no_verified_pair", "none of 6 pairs has matches that beat chance"),
+        (gray, "no_features", "4 of 4 images"),
+        (noise, "no_verified_pair", "6 pairs"),
     ],
 )
 def test_images_without_anything_in_common(
@@ -67,7 +67,8 @@ def test_images_without_anything_in_common(
     protocol = replace(quick.protocol, focal_length=300.0)
     options = replace(quick, protocol=protocol)
     row = only_row(scene(tmp_path / "images", picture), tmp_path / "models", options)
-    assert (row["status"], row["message"]) == (status, message)
+    assert row["status"] == status
+    assert message in row["message"]
     assert row["registered_images"] is None
 
 
@@ -77,8 +78,8 @@ def test_identical_images_have_no_angle_between_them(
     options = replace(quick, protocol=replace(quick.protocol, focal_length=300.0))
     row = only_row(scene(tmp_path / "images", always_the_same), tmp_path / "models", options)
     assert row["status"] == "no_initial_pair"
-    assert "at 0.0 degrees" in row["message"]
-    assert "COLMAP asks for 25 inliers and 4 degrees" in row["message"]
+    assert "0.0 degrees" in row["message"]
+    assert "25 inliers and 4 degrees" in row["message"]
 
 
 @pytest.mark.slow
@@ -93,10 +94,10 @@ def test_two_groups_that_do_not_meet_are_named(
     row = only_row(scene_of(images), tmp_path / "models", options, "SIFT-SIFT-L2-FLANN")
     assert row["status"] == "incomplete"
     assert (row["registered_images"], row["components"]) == (4, 2)
-    assert row["message"] == (
-        "the model holds 4 of 7 images; the graph of verified pairs falls into 2 parts: 4 images "
-        "(one/view_0.png, one/view_1.png, one/view_2.png, ...), 3 images (two/view_0.png, "
-        "two/view_1.png, two/view_2.png)"
+    assert "4 of 7 images" in row["message"]
+    assert row["message"].endswith(
+        "4 images (one/view_0.png, one/view_1.png, one/view_2.png, ...), 3 images "
+        "(two/view_0.png, two/view_1.png, two/view_2.png)"
     )
 
 
@@ -122,13 +123,12 @@ def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
     rows = {row["descriptor"]: row for row in table.to_dicts()}
     assert rows["ORB"]["status"] == "ok"
     assert rows["NANS"]["status"] == "error"
-    assert rows["NANS"]["message"] == (
-        "NANS describing view_0.png returned positions that are not finite"
-    )
+    assert rows["NANS"]["message"].startswith("NANS describing view_0.png ")
     assert rows["DYING"]["status"] == "crashed"
     assert rows["GREEDY"]["status"] == "out_of_memory"
     assert "GREEDY describing ORB keypoints of view_0.png" in rows["GREEDY"]["message"]
-    assert "signal SIGSEGV) in describe ORB-DYING on view_0.png" in rows["DYING"]["message"]
+    assert "SIGSEGV" in rows["DYING"]["message"]
+    assert "describe ORB-DYING on view_0.png" in rows["DYING"]["message"]
 
 
 @pytest.mark.slow
@@ -138,8 +138,7 @@ def test_a_stage_that_takes_too_long_is_ended(
     options = replace(quick, time_limit=0.3)
     row = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert row["status"] == "timeout"
-    # Idle where the machine has no time for it.
-    assert re.search(r"(used more than|sat idle for) 0\.3 .*\(--time-limit\)", row["message"])
+    assert re.search(r"0\.3 .*--time-limit", row["message"])
     same = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert same["reconstructed_at"] == row["reconstructed_at"]
     # With more time it is tried again by itself.
@@ -157,7 +156,7 @@ def test_gray_images_leave_out_what_needs_colour(
         cv2.imwrite(str(path), noise(number)[:, :, 0])
         images.append(Image(path.name, FileSource(path)))
     options = replace(quick, protocol=replace(quick.protocol, focal_length=300.0))
-    with pytest.raises(ReconstructionError, match="LUCID needs three colour channels"):
+    with pytest.raises(ReconstructionError, match="LUCID"):
         only_row(scene_of(images), tmp_path / "models", options, "ORB-LUCID-HAM-BF")
     row = only_row(
         scene_of(images), tmp_path / "models", options, "ORB-LUCID-HAM-BF,ORB-ORB-HAM-BF"

@@ -178,12 +178,12 @@ def test_a_focal_length_that_is_not_known_must_be_given_to_stay_fixed(
     landscape: Dataset, quick: ReconstructionOptions, empty: Path
 ) -> None:
     images = [replace(image, truth=None) for image in landscape.images]
-    with pytest.raises(ReconstructionError, match=r"9 of 9 images is not known .* --focal-length"):
+    with pytest.raises(ReconstructionError, match=r"9 of 9 .* --focal-length"):
         aerocues.reconstruct(scene_of(images), empty, SIFT, options=quick)
 
 
 def test_scenes_that_have_no_depth_are_refused(empty: Path) -> None:
-    with pytest.raises(ReconstructionError, match="related by homographies"):
+    with pytest.raises(ReconstructionError, match="homograph"):
         aerocues.reconstruct("synthetic", empty, SIFT)
 
 
@@ -195,18 +195,18 @@ def test_several_scenes_must_be_told_apart(landscape: Dataset, empty: Path) -> N
 
 def test_a_reference_must_be_among_the_combinations(landscape: Dataset, empty: Path) -> None:
     options = ReconstructionOptions(reference="ORB-ORB-HAM-BF")
-    with pytest.raises(ReconstructionError, match="not among the combinations"):
+    with pytest.raises(ReconstructionError, match="ORB-ORB-HAM-BF"):
         aerocues.reconstruct(landscape, empty, SIFT, options=options)
-    with pytest.raises(ReconstructionError, match="no combinations"):
+    with pytest.raises(ReconstructionError, match="combinations"):
         aerocues.reconstruct(landscape, empty)
 
 
 def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> None:
     empty.mkdir()
     (empty / "letter.txt").write_text("dear")
-    with pytest.raises(StoreError, match=r"holds other files \(letter.txt"):
+    with pytest.raises(StoreError, match=r"letter\.txt"):
         aerocues.reconstruct(landscape, empty, SIFT)
-    with pytest.raises(StoreError, match=r"no folder of models"):
+    with pytest.raises(StoreError, match=str(empty)):
         Models(empty)
 
 

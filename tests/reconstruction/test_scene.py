@@ -141,7 +141,7 @@ def test_clouds_lie_beside_the_figures(tmp_path: Path) -> None:
     assert len(found.points) == 100
     assert [file.name for file in store.cloud_files()] == ["key.npz"]
     store.cloud_files()[0].write_bytes(b"half")
-    with pytest.raises(StoreError, match="is damaged"):
+    with pytest.raises(StoreError, match=r"key\.npz"):
         store.cloud("key")
 
 
@@ -152,6 +152,6 @@ def test_results_of_other_images_are_refused(tmp_path: Path) -> None:
         for number in range(2):
             photograph(tmp_path / name / f"{number}.jpg")
     aerocues.run(str(tmp_path / "one"), "ORB-ORB-HAM-BF", tmp_path / "results")
-    with pytest.raises(StoreError, match="holds results of one and not of two"):
+    with pytest.raises(StoreError, match=r"\bone\b.*\btwo\b"):
         open_results(tmp_path / "results", open_dataset(str(tmp_path / "two")))
     assert open_results(tmp_path / "results", open_dataset(str(tmp_path / "one")))

@@ -79,9 +79,9 @@ def test_the_report_holds_the_clouds(results: aerocues.Results, tmp_path: Path) 
 
 def test_the_text_tells_of_models(results: aerocues.Results) -> None:
     text = summary(report_entries([results]), "Models")
-    assert "3D models: 3 of 6 reconstructions succeeded." in text
+    assert "3 of 6" in text
     assert f"- `{MODELLED[0]}`: 12 of 12 images, 12,000 points, 0.60 px, cameras" in text
-    assert "- failed: misplaced 1, incomplete 1, no verified pair 1" in text
+    assert "misplaced 1, incomplete 1, no verified pair 1" in text
 
 
 @pytest.mark.slow

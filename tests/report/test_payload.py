@@ -153,7 +153,7 @@ def test_titles_name_what_was_measured(two_machines: list[Results]) -> None:
 
 
 def test_nothing_to_report_on() -> None:
-    with pytest.raises(ScoreError, match="name a results folder"):
+    with pytest.raises(ScoreError):
         report_entries([])
 
 

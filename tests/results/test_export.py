@@ -31,6 +31,6 @@ def test_json_has_null_for_what_is_missing(tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 def test_a_device_is_written_in_place_and_a_full_one_is_told() -> None:
     export_table(TABLE, Path("/dev/null"), "csv")
-    with pytest.raises(StoreError, match="cannot write /dev/full: No space left"):
+    with pytest.raises(StoreError, match=r"/dev/full.*No space left"):
         export_table(TABLE, Path("/dev/full"), "csv")
     assert Path("/dev/full").is_char_device()

@@ -98,9 +98,9 @@ def test_a_file_zipped_by_hand_is_read(results: Results, tmp_path: Path) -> None
 
 
 def test_a_file_that_cannot_be_written_is_told(results: Results, tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="cannot write"):
+    with pytest.raises(StoreError, match=r"packed\.zip"):
         results.pack(tmp_path / "missing" / "packed.zip")
-    with pytest.raises(StoreError, match="it is a folder"):
+    with pytest.raises(StoreError, match=str(results.folder)):
         results.pack(results.folder)
     assert len(results.table()) == 2
 
@@ -112,7 +112,7 @@ def test_nothing_lands_outside(
     file = results.pack(tmp_path / "packed.zip")
     with zipfile.ZipFile(file, "a") as archive:
         archive.writestr(name, "evil")
-    with pytest.raises(StoreError, match=r"would write to .*evil.*, outside; do not use it"):
+    with pytest.raises(StoreError, match="evil"):
         Results(file)
     assert list(temporary.iterdir()) == []
 
@@ -130,7 +130,7 @@ def test_damage_is_told(results: Results, tmp_path: Path, temporary: Path) -> No
     )
     for content in damaged:
         file.write_bytes(content)
-        with pytest.raises(StoreError, match=r"no results folder and no packed one.*import"):
+        with pytest.raises(StoreError, match=r"packed\.zip"):
             Results(file).table()
         gc.collect()
         assert list(temporary.iterdir()) == []
@@ -139,15 +139,15 @@ def test_damage_is_told(results: Results, tmp_path: Path, temporary: Path) -> No
 @pytest.mark.parametrize(
     ("names", "told"),
     [
-        ((), "no run.json"),
-        (("a/b/run.json",), "no run.json"),
-        (("a/run.json", "b/run.json"), "several files run.json"),
-        (("run.json",), "no plan.parquet"),
+        ((), "run.json"),
+        (("a/b/run.json",), "run.json"),
+        (("a/run.json", "b/run.json"), "run.json"),
+        (("run.json",), "plan.parquet"),
     ],
 )
 def test_other_archives_are_refused(tmp_path: Path, names: tuple[str, ...], told: str) -> None:
     with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
         for name in names:
             archive.writestr(name, "{}")
-    with pytest.raises(StoreError, match=rf"no packed results folder \({told}\)"):
+    with pytest.raises(StoreError, match=rf"other\.zip.*{told}"):
         Results(tmp_path / "other.zip")

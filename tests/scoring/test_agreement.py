@@ -106,5 +106,5 @@ def test_what_has_no_score_takes_no_part() -> None:
 
 def test_without_pymcdm_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pymcdm", None)
-    with pytest.raises(MethodUnavailableError, match="install aerocues"):
+    with pytest.raises(MethodUnavailableError, match=r"aerocues\[validation\]"):
         agreement(score(random_table(0)))

@@ -171,7 +171,7 @@ def test_an_alternative_seldom_valid_is_judged_by_the_resamples_that_hold_it() -
 
 @pytest.mark.parametrize(("resamples", "seed"), [(1, 0), (0, 0), (10, -1)])
 def test_arguments_out_of_range(resamples: int, seed: int) -> None:
-    with pytest.raises(ScoreError, match="or more"):
+    with pytest.raises(ScoreError):
         bootstrap(score(random_table(0)), resamples, seed)
 
 

@@ -83,11 +83,11 @@ def test_data_sets_may_be_called_as_they_like() -> None:
 
 def test_what_cannot_be_compared_is_told() -> None:
     one = scored({"a": 1.0, "b": 2.0})
-    with pytest.raises(ScoreError, match="two results or more"):
+    with pytest.raises(ScoreError, match="two"):
         compare({"one": one})
-    with pytest.raises(ScoreError, match="no alternative is in two"):
+    with pytest.raises(ScoreError, match="alternative"):
         compare({"one": one, "two": scored({"c": 1.0, "d": 2.0})})
-    with pytest.raises(ScoreError, match="choose pairwise or all"):
+    with pytest.raises(ScoreError, match="pairwise or all"):
         compare({"one": one, "two": one}, "some")  # type: ignore[arg-type]
 
 
@@ -128,7 +128,7 @@ def test_results_have_the_shortest_names_that_differ(
 
 
 def test_the_same_results_twice_are_refused() -> None:
-    with pytest.raises(ScoreError, match="named twice"):
+    with pytest.raises(ScoreError, match="twice"):
         entries_of([InFolder("r"), InFolder("r")])
 
 
@@ -143,7 +143,7 @@ def test_one_folder_may_hold_several_datasets() -> None:
 
 def test_rankings_by_different_presets_are_not_compared() -> None:
     untested = InFolder("s", chance_inliers=None, excess_inliers=None, dataset="other")
-    with pytest.raises(ScoreError, match="choose one with --preset"):
+    with pytest.raises(ScoreError, match="preset"):
         entries_of([InFolder("r"), untested])
     assert len(entries_of([InFolder("r"), untested], "thesis")) == 2
 

@@ -134,7 +134,7 @@ def test_critical_difference(name: str) -> None:
     scores = ranked(table_named(name)).scores
     alternatives, repeats = TABLES[name].shape[:2]
     if alternatives < 2 or repeats < 2:
-        with pytest.raises(ScoreError, match="take 2 or more of each"):
+        with pytest.raises(ScoreError, match=r"\b2\b"):
             critical_difference(scores, scores.order.tolist())
     else:
         found = critical_difference(scores, scores.order.tolist())

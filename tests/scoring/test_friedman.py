@@ -113,7 +113,7 @@ def test_all_alike() -> None:
 
 @pytest.mark.parametrize("shape", [(1, 5), (5, 1), (3, 0)])
 def test_too_little_to_rank(shape: tuple[int, int]) -> None:
-    with pytest.raises(ScoreError, match="take 2 or more of each"):
+    with pytest.raises(ScoreError, match=r"\b2\b"):
         friedman(np.zeros(shape), [str(each) for each in range(shape[0])])
 
 

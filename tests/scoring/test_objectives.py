@@ -58,7 +58,7 @@ def test_every_objective_weighs_what_the_presets_measure(name: str, preset: str)
 
 
 def test_what_cannot_be_weighed_is_told() -> None:
-    with pytest.raises(ScoreError, match="no objective 'best'; choose from balanced, speed"):
+    with pytest.raises(ScoreError, match=r"'best'.* balanced, speed"):
         objective_named("best")
-    with pytest.raises(ScoreError, match="accuracy, quantity, of which there is no criterion"):
+    with pytest.raises(ScoreError, match="accuracy, quantity"):
         OBJECTIVES["accuracy"].weights(np.ones(1), (Criterion("price", "lower"),))

@@ -42,5 +42,5 @@ def test_front_of_speed_against_quality() -> None:
 
 def test_an_unknown_criterion() -> None:
     scores = score(table_of(np.ones((2, 1, 1))))
-    with pytest.raises(ScoreError, match="no criterion 'speed' here; choose from c0"):
+    with pytest.raises(ScoreError, match=r"'speed'.*\bc0\b"):
         pareto_of_criteria(scores, "c0", "speed")

@@ -76,5 +76,5 @@ def test_of_one_alternative_none_can_be_dropped() -> None:
 
 @pytest.mark.parametrize(("share", "rounds"), [(0, 10), (1, 10), (-0.1, 10), (0.1, 0)])
 def test_arguments_out_of_range(share: float, rounds: int) -> None:
-    with pytest.raises(ScoreError, match="between 0 and 1"):
+    with pytest.raises(ScoreError, match="0 and 1"):
         rank_reversal(score(random_table(0)), share, rounds)

@@ -128,17 +128,17 @@ def test_a_criterion_must_not_hide_another_column(name: str) -> None:
     table = DecisionTable.from_frame(
         frame, alternative="laptop", criteria=[Criterion(name, column="figure")]
     )
-    with pytest.raises(ScoreError, match="another name"):
+    with pytest.raises(ScoreError, match=name):
         rank_alternatives(table, resamples=5).frame()
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"interval": "wide"}, "no interval 'wide'; choose from joint, pairwise"),
-        ({"test": "sign"}, "no test 'sign'; choose from bootstrap, wilcoxon"),
-        ({"resamples": 1}, "2 or more"),
-        ({"seed": -1}, "0 or more"),
+        ({"interval": "wide"}, "'wide'.* joint, pairwise"),
+        ({"test": "sign"}, "'sign'.* bootstrap, wilcoxon"),
+        ({"resamples": 1}, "resamples"),
+        ({"seed": -1}, "seed"),
     ],
 )
 def test_arguments_that_do_not_exist(options: dict[str, Any], message: str) -> None:

@@ -15,15 +15,15 @@ from aerocues.scoring.settings import preset_named
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"alpha": 0}, "alpha is 0; give a number above 0"),
-        ({"alpha": -1.0}, "alpha is -1.0"),
-        ({"alpha": float("nan")}, "alpha is nan"),
-        ({"alpha": float("inf")}, "alpha is inf"),
-        ({"weights": ()}, "no weights; choose from entropy"),
-        ({"weights": ("merec",)}, "no method of weighting 'merec'; choose from entropy"),
-        ({"weights": ("pca", "pca")}, "twice"),
-        ({"aggregation": "median"}, "no aggregation 'median'; choose from arithmetic"),
-        ({"failures": "ignore"}, "no treatment of failures 'ignore'; choose from worst, omit"),
+        ({"alpha": 0}, r"alpha .*\b0\b"),
+        ({"alpha": -1.0}, r"alpha .*-1\.0"),
+        ({"alpha": float("nan")}, "alpha .*nan"),
+        ({"alpha": float("inf")}, "alpha .*inf"),
+        ({"weights": ()}, "weights.* entropy"),
+        ({"weights": ("merec",)}, "'merec'.* entropy"),
+        ({"weights": ("pca", "pca")}, "pca"),
+        ({"aggregation": "median"}, "'median'.* arithmetic"),
+        ({"failures": "ignore"}, "'ignore'.* worst, omit"),
     ],
 )
 def test_settings_that_do_not_exist(changes: dict[str, Any], message: str) -> None:
@@ -50,5 +50,5 @@ def test_preset_of_the_thesis_is_as_published() -> None:
 
 
 def test_an_unknown_preset() -> None:
-    with pytest.raises(ScoreError, match="choose from default, thesis"):
+    with pytest.raises(ScoreError, match="default, thesis"):
         preset_named("best")

@@ -178,5 +178,5 @@ def test_of_one_unit_nothing_can_be_told() -> None:
 
 def test_an_unknown_test() -> None:
     scores = score(random_table(0))
-    with pytest.raises(ScoreError, match="choose from bootstrap, wilcoxon"):
+    with pytest.raises(ScoreError, match="bootstrap, wilcoxon"):
         compare_with_best(scores, bootstrap(scores, 5), "sign")

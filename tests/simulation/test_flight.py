@@ -87,11 +87,11 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
     assert (
         len(open_dataset(spec, subset="Layer1, Layer2/*/000.png", pairs="exhaustive").images) == 5
     )
-    with pytest.raises(DatasetError, match=r"no image of .* is in --subset Layer3; there are: Lay"):
+    with pytest.raises(DatasetError, match=r"--subset Layer3.* Layer1"):
         open_dataset(spec, subset="Layer3")
-    with pytest.raises(DatasetError, match="holds one image a view; use --pairs exhaustive"):
+    with pytest.raises(DatasetError, match="--pairs exhaustive"):
         open_dataset(spec, subset="*/000.png")
-    with pytest.raises(DatasetError, match="synthetic has pairs of its own; use --sequences"):
+    with pytest.raises(DatasetError, match="--sequences"):
         open_dataset("synthetic", subset="a")
 
 
@@ -107,17 +107,17 @@ def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
     assert simulate(whole, SURVEY, small, subset=name) == Flown(0, 1)
     assert len(list(whole.glob("Layer1/*.png"))) == 2
     assert simulate(part, SURVEY, small) == Flown(1, 1)
-    with pytest.raises(SimulationError, match=r"no image of short is in --subset x; there are: La"):
+    with pytest.raises(SimulationError, match=r"--subset x.* Layer1"):
         simulate(part, SURVEY, small, subset="x")
 
 
 def test_folders_of_other_files_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "holiday.jpg").touch()
-    with pytest.raises(SimulationError, match=r"holds other files \(holiday.jpg"):
+    with pytest.raises(SimulationError, match=r"holiday\.jpg"):
         simulate(tmp_path, SURVEY, SETTINGS)
-    with pytest.raises(SimulationError, match="is a file"):
+    with pytest.raises(SimulationError, match=r"holiday\.jpg"):
         simulate(tmp_path / "holiday.jpg", SURVEY, SETTINGS)
-    with pytest.raises(SimulationError, match="there is no scene 'moon'"):
+    with pytest.raises(SimulationError, match="'moon'"):
         simulate(tmp_path / "new", SURVEY, replace(SETTINGS, scene="moon"))
     assert not (tmp_path / "new").exists()
 

@@ -90,10 +90,10 @@ def test_a_mission_from_a_file(tmp_path: Path) -> None:
     with pytest.raises(SimulationError, match="hight"):
         open_survey(str(path), CAMERA)
     path.write_text("[1]")
-    with pytest.raises(SimulationError, match="must hold an object with pattern"):
+    with pytest.raises(SimulationError, match="pattern"):
         open_survey(str(path), CAMERA)
     path.write_text("{")
-    with pytest.raises(SimulationError, match=r"not written as JSON \(line 1, column 2\)"):
+    with pytest.raises(SimulationError, match=r"JSON \(line 1, column 2\)"):
         open_survey(str(path), CAMERA)
     with pytest.raises(SimulationError, match="airsimnh"):
         open_survey("nowhere", CAMERA)

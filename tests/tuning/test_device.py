@@ -48,16 +48,16 @@ def test_factors_come_from_the_same_rows_on_two_machines(finished: Path, tmp_pat
     assert set(factors["match"]) == {"*", "HAM-BF", "HAM-FLANN"}
     for stage in factors.values():
         assert list(stage.values()) == pytest.approx([SLOWER] * len(stage))
-    with pytest.raises(ScoreError, match="share no row with times to detect"):
+    with pytest.raises(ScoreError, match="detect"):
         device_factors(here, there.clear())
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("{", "cannot read the factors"),
-        ("[]", "holds no factors: it needs 'stages' with detect, describe, match, verify"),
-        ('{"stages": {"detect": {"*": 0}}}', "positive numbers"),
+        ("{", "factors.json"),
+        ("[]", "'stages' with detect, describe, match, verify"),
+        ('{"stages": {"detect": {"*": 0}}}', "positive"),
     ],
 )
 def test_files_that_hold_no_factors_are_told(tmp_path: Path, content: str, words: str) -> None:
@@ -65,7 +65,7 @@ def test_files_that_hold_no_factors_are_told(tmp_path: Path, content: str, words
     file.write_text(content)
     with pytest.raises(SelectionError, match=words):
         read_device(file)
-    with pytest.raises(SelectionError, match="cannot read the factors"):
+    with pytest.raises(SelectionError, match=r"missing\.json"):
         read_device(tmp_path / "missing.json")
     stages = {name: {"*": 2} for name in ("detect", "describe", "match", "verify")}
     file.write_text(json.dumps({"machine": "board", "stages": stages}))

@@ -121,11 +121,11 @@ def test_the_first_look_sees_every_block() -> None:
 
 def test_nothing_to_choose_from_and_nothing_that_works() -> None:
     place = made_up(failing=1.1)
-    with pytest.raises(ScoreError, match="every combination failed on the first pairs"):
+    with pytest.raises(ScoreError):
         race(place, RaceSettings(budget=1.0))
     lonely = made_up()
     lonely.alternatives = ["a-u-m"]
-    with pytest.raises(ScoreError, match="a race needs two alternatives"):
+    with pytest.raises(ScoreError, match="two"):
         race(lonely, RaceSettings(budget=1.0))
 
 
