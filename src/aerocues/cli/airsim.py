@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import shlex
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from aerocues.cli.console import count
+from aerocues.cli.options import (
+    FieldOfViewOption,
+    FlightOption,
+    ImageFormatOption,
+    SubsetOption,
+    SurveyOption,
+)
 from aerocues.cli.simulate import numbers
 
 app = typer.Typer(help="Collect images from a running AirSim.", no_args_is_help=True)
@@ -29,36 +35,29 @@ def airsim() -> None:
 
 @app.command()
 def collect(
-    output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Folder of the flight.")
-    ],
-    survey: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME", help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."
-        ),
-    ] = "airsimnh",
-    subset: Annotated[
-        str | None,
-        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
-    ] = None,
-    host: Annotated[
-        str, typer.Option(metavar="NAME", help="Where the simulator runs.")
-    ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, metavar="N", help="Its port.")] = 41451,
+    output: FlightOption,
+    survey: SurveyOption = "airsimnh",
+    subset: SubsetOption = None,
+    host: Annotated[str, typer.Option(metavar="NAME", help="Host of the simulator.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=1, max=65535, metavar="N", help="Port of the simulator.")
+    ] = 41451,
     flavour: Annotated[
-        Flavour | None, typer.Option(help="airsim (1.8.1) or cosys; found out by default.")
+        Flavour | None, typer.Option(help="airsim (1.8.1) or cosys; detected by default.")
     ] = None,
     size: Annotated[
-        str, typer.Option(metavar="WxH", help="Pixels, as in the simulator's settings.json.")
+        str,
+        typer.Option(
+            metavar="WxH", help="Image size in pixels, as in the simulator's settings.json."
+        ),
     ] = "1000x665",
-    fov: Annotated[float, typer.Option(metavar="DEGREES", help="Horizontal field of view.")] = 90.0,
-    form: Annotated[str, typer.Option("--format", metavar="NAME", help="png or jpeg.")] = "png",
+    fov: FieldOfViewOption = 90.0,
+    form: ImageFormatOption = "png",
     timeout: Annotated[
-        float, typer.Option(min=0.1, metavar="SECONDS", help="That an answer may take.")
+        float, typer.Option(min=0.1, metavar="SECONDS", help="Longest wait for an answer.")
     ] = 60.0,
 ) -> None:
-    """Fly a survey: images, poses, depth. Goes on where an earlier run broke off."""
+    """Fly a survey: images, poses and depth. Continues an interrupted flight."""
     from aerocues.airsim.collect import Collection
     from aerocues.airsim.collect import collect as fly
     from aerocues.cli.flying import show

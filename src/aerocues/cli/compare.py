@@ -1,4 +1,4 @@
-"""`aerocues compare`: rankings across data sets and machines."""
+"""`aerocues compare`: rankings across datasets and machines."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.options import JsonOption, ResultsArguments, TopOption
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
     AggregationOption,
@@ -38,9 +39,7 @@ class Over(StrEnum):
 
 
 def compare(
-    folders: Annotated[
-        list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed ones.")
-    ],
+    folders: ResultsArguments,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
@@ -48,13 +47,16 @@ def compare(
     weights: WeightsOption = None,
     aggregation: AggregationOption = None,
     reconstruction: Annotated[
-        bool, typer.Option("--reconstruction", help="Score the 3D models, too, in all results.")
+        bool, typer.Option("--reconstruction", help="Also score the 3D models, in all results.")
     ] = False,
     over: Annotated[
-        Over, typer.Option(help="Combinations scored in both of two results, or in all.")
+        Over,
+        typer.Option(
+            help="Compare combinations that are scored in both of two results, or in all."
+        ),
     ] = Over.PAIRWISE,
-    top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 15,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    top: TopOption = 15,
+    as_json: JsonOption = False,
     csv: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="Write scores and ranks as CSV; - is standard output."),
@@ -63,12 +65,12 @@ def compare(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Write how much longer each stage takes in the second results than in the first: "
+            help="Write how much longer each stage takes in the second results than in the first, "
             "for 'recommend --device'.",
         ),
     ] = None,
 ) -> None:
-    """Compare rankings across data sets, and times across machines."""
+    """Compare rankings across datasets, and times across machines."""
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.scoring import named

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.options import JsonOption
+
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
     from rich.progress import TaskID
@@ -19,9 +21,9 @@ app = typer.Typer(help="List the kinds of dataset, or fetch one.", no_args_is_he
 @app.callback(invoke_without_command=True)
 def datasets(
     context: typer.Context,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
-    """List the kinds of dataset: what each needs and where to get it."""
+    """List the kinds of dataset, what each needs and where to get it."""
     if context.invoked_subcommand is None:
         if as_json:
             _print_json()
@@ -31,14 +33,14 @@ def datasets(
 
 @app.command()
 def fetch(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="oxford or hpatches")],
-    to: Annotated[Path, typer.Option("--to", metavar="DIR", help="Folder to put it into.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Dataset: oxford or hpatches.")],
+    to: Annotated[Path, typer.Option("--to", metavar="DIR", help="Folder to download to.")],
     base_url: Annotated[
         str | None,
-        typer.Option(metavar="URL", help="Folder of a mirror that has the same archives."),
+        typer.Option(metavar="URL", help="URL of a mirror with the same archives."),
     ] = None,
 ) -> None:
-    """Download a benchmark from its authors; goes on where an earlier attempt broke off."""
+    """Download a benchmark from its authors. Continues an interrupted download."""
     from rich.console import Console
     from rich.progress import (
         BarColumn,
@@ -68,7 +70,7 @@ def fetch(
 
 
 def _shown_on(bars: Bars) -> Progress:
-    """A bar for each file, made when the file begins: what is wrong before is told without."""
+    """A progress bar for each file, shown when its download starts."""
     tasks: dict[str, TaskID] = {}
 
     def show(file: str, done: int, total: int | None) -> None:

@@ -1,4 +1,4 @@
-"""`aerocues import`: results folders from measurement tables made elsewhere."""
+"""`aerocues import`: makes results folders from other measurement tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 def import_table(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Measurements: .csv or .parquet, a row a pair.")
+        Path,
+        typer.Argument(metavar="FILE", help="Measurements (.csv or .parquet), one row per pair."),
     ],
     output: Annotated[
         Path,
@@ -21,19 +22,21 @@ def import_table(
             "-o",
             "--output",
             metavar="RESULTS",
-            help="Results folder; of several datasets or platforms: a folder of results folders.",
+            help="Results folder; with several datasets or platforms, a folder of results folders.",
         ),
     ],
     reconstruction: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Figures of 3D reconstructions: .csv or .parquet."),
+        typer.Option(metavar="FILE", help="Figures of 3D reconstructions (.csv or .parquet)."),
     ] = None,
-    dataset: Annotated[str | None, typer.Option(metavar="NAME", help="This dataset only.")] = None,
+    dataset: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Import only this dataset.")
+    ] = None,
     platform: Annotated[
-        str | None, typer.Option(metavar="NAME", help="This platform only.")
+        str | None, typer.Option(metavar="NAME", help="Import only this platform.")
     ] = None,
 ) -> None:
-    """Make results folders of measurements made elsewhere."""
+    """Make results folders from other measurement tables."""
     import aerocues
     from aerocues.cli.interruption import interruptible
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.options import DescriptorsOption, DetectorsOption, EverythingOption, JsonOption
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -22,12 +24,12 @@ app = typer.Typer(help="List the methods; choose and explain combinations.")
 @app.callback(invoke_without_command=True)
 def methods(
     context: typer.Context,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: JsonOption = False,
     preset: Annotated[
-        str, typer.Option(metavar="NAME", help="Show the parameters of this preset or file.")
+        str, typer.Option(metavar="NAME", help="Show the parameters of this preset or preset file.")
     ] = "default",
 ) -> None:
-    """List what is installed, with parameters and sources."""
+    """List the installed methods, with parameters and sources."""
     if context.invoked_subcommand is not None:
         return
     from aerocues.methods.plugins import installed_methods
@@ -46,10 +48,11 @@ def methods(
 @app.command()
 def why(
     combinations: Annotated[
-        list[str], typer.Argument(metavar="COMBINATION", help="Such as SIFT-ORB-HAM-BF.")
+        list[str],
+        typer.Argument(metavar="COMBINATION", help="Combination, such as SIFT-ORB-HAM-BF."),
     ],
 ) -> None:
-    """Tell whether a combination runs, and why not if it does not."""
+    """Tell whether a combination can run, and if not, why."""
     from aerocues.methods.explanation import explain
     from aerocues.methods.plugins import installed_methods
 
@@ -61,15 +64,14 @@ def why(
 @app.command("list")
 def list_combinations(
     globs: Annotated[
-        str | None, typer.Argument(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,!*-BOOST-*'.")
+        str | None,
+        typer.Argument(metavar="GLOBS", help="Combinations, such as 'ORB-*-HAM-BF,!*-BOOST-*'."),
     ] = None,
-    detectors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
-    descriptors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
-    everything: Annotated[
-        bool, typer.Option("--all", help="All that can run, not only those that mean something.")
-    ] = False,
+    detectors: DetectorsOption = None,
+    descriptors: DescriptorsOption = None,
+    everything: EverythingOption = False,
 ) -> None:
-    """Print the combinations that a selection takes, one a line."""
+    """Print the selected combinations, one per line."""
     from aerocues.methods.plugins import installed_methods
     from aerocues.methods.selection import select
 
@@ -148,16 +150,16 @@ def _print_methods(found: Methods, preset: str) -> None:
     counts = count_combinations(found)
     console.print(f"Norms: {', '.join(f'{n.name} ({n.title})' for n in found.norms.values())}")
     console.print(f"Parameters are those of the preset {preset}.\n")
-    console.print(_counted(counts.declared, "combinations can be written down"))
-    console.print(_counted(counts.runnable, "of them can run (run --all)"))
-    console.print(_counted(counts.meaningful, "of these mean something (the default selection)"))
+    console.print(_counted(counts.declared, "combinations in all"))
+    console.print(_counted(counts.runnable, "of these can run (run --all)"))
+    console.print(_counted(counts.meaningful, "of these are meaningful (the default selection)"))
     for cause, number in counts.incompatible.items():
         console.print(_counted(number, f"cannot: {cause}"), style="dim")
     if counts.unavailable:
         console.print(_counted(counts.unavailable, "cannot here: unavailable"), style="yellow")
     for problem in found.problems:
         console.print(Text(f"\nProblem: {problem}", style="yellow"))
-    console.print("\nWhy one cannot: aerocues methods why SIFT-ORB-HAM-BF")
+    console.print("\nTo see why one cannot run: aerocues methods why SIFT-ORB-HAM-BF")
 
 
 def _counted(number: int, what: str) -> str:

@@ -1,4 +1,4 @@
-"""All commands together, and how errors become one line and an exit code."""
+"""All commands, and how errors become one line and an exit code."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
-app.command("tune", short_help="Search parameters; keep those that pay on other scenes.")(tune.tune)
+app.command("tune", short_help="Search parameters; keep those that help on other scenes.")(
+    tune.tune
+)
 app.command("simulate")(simulate.simulate)
 app.add_typer(airsim.app, name="airsim")
 app.add_typer(methods.app, name="methods")
@@ -89,7 +91,7 @@ def options(
 
 
 def exit_code(arguments: Sequence[str]) -> int:
-    """Run a command; what goes wrong with its input is told in one line on standard error."""
+    """Run a command; wrong input gives one line on standard error."""
     try:
         return _run(arguments)
     except BrokenPipeError:

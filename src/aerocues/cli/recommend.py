@@ -1,4 +1,4 @@
-"""`aerocues recommend`: which combination to take, within a budget of time."""
+"""`aerocues recommend`: finds the best combination within a budget of time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from aerocues.cli.options import (
+    CombinationsOption,
+    DatasetArgument,
+    EqualizeOption,
+    MaxKeypointsOption,
+    MaxWidthOption,
+    MethodPresetOption,
+    PairsOption,
+    SeedOption,
+    SubsetOption,
+    TopOption,
+    WorkersOption,
+)
 
 if TYPE_CHECKING:
     from aerocues.cli.next_commands import AsMeasured
@@ -32,74 +46,61 @@ class Objective(StrEnum):
 
 
 def recommend(
-    images: Annotated[
-        str, typer.Argument(help="A folder, or one of the kinds that 'aerocues datasets' lists.")
-    ],
+    images: DatasetArgument,
     budget: Annotated[
-        str, typer.Option(metavar="TIME", help="Such as 90s, 5min or 1h, all included.")
+        str, typer.Option(metavar="TIME", help="Total time, such as 90s, 5min or 1h.")
     ] = "5min",
     objective: Annotated[
-        Objective, typer.Option(help="What the best is to be best for.")
+        Objective, typer.Option(help="What the combination is used for.")
     ] = Objective.BALANCED,
-    top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 5,
+    top: TopOption = 5,
     device: Annotated[
         Path | None,
         typer.Option(
-            metavar="FACTORS", help="Times as on another machine: from 'compare --factors'."
+            metavar="FACTORS", help="Use the times of another machine, from 'compare --factors'."
         ),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Results folder; NAME-race by default."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Results folder, created or continued; by default NAME-race.",
+        ),
     ] = None,
-    explain: Annotated[bool, typer.Option("--explain", help="Show the race.")] = False,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Show the rounds of the race.")
+    ] = False,
     report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the page of what was measured.")
+        Path | None, typer.Option(metavar="FILE", help="Write a report page.")
     ] = None,
-    combinations: Annotated[
-        str | None, typer.Option(metavar="GLOBS", help="These only, such as 'ORB-*,SIFT-SIFT-*'.")
-    ] = None,
-    preset: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME", help="Parameters: default, thesis, tuned, or a preset's file."
-        ),
-    ] = "default",
-    max_keypoints: Annotated[
-        int, typer.Option(min=0, metavar="N", help="The strongest of an image; 0: all.")
-    ] = KEYPOINTS,
-    max_width: Annotated[
-        int, typer.Option(min=0, metavar="PIXELS", help="Shrink wider images; 0: as they are.")
-    ] = WIDTH,
-    pairs: Annotated[
-        str | None,
-        typer.Option(
-            help="consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file of pairs."
-        ),
-    ] = None,
+    combinations: CombinationsOption = None,
+    preset: MethodPresetOption = "default",
+    max_keypoints: MaxKeypointsOption = KEYPOINTS,
+    max_width: MaxWidthOption = WIDTH,
+    pairs: PairsOption = None,
     max_pairs: Annotated[
-        int, typer.Option(min=2, metavar="N", help="So many pairs stand for all, at most.")
+        int, typer.Option(min=2, metavar="N", help="Maximum number of representative pairs.")
     ] = 24,
-    subset: Annotated[
-        str | None, typer.Option(metavar="GLOBS", help="These images or folders only.")
-    ] = None,
-    equalize: Annotated[
-        str, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
-    ] = "none",
+    subset: SubsetOption = None,
+    equalize: EqualizeOption = "none",
     sure: Annotated[
-        float, typer.Option(min=0.5, max=1.0, help="Probability at which the race may end.")
+        float,
+        typer.Option(
+            min=0.5,
+            max=1.0,
+            metavar="P",
+            help="End the race when the leader is this likely the best.",
+        ),
     ] = 0.95,
-    workers: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
-    ] = 0,
+    workers: WorkersOption = None,
+    seed: SeedOption = 0,
 ) -> None:
-    """Tell which combination to take, in minutes.
+    """Recommend a combination for images, in minutes.
 
-    Combinations race on pairs of the images: cheap ones are looked at first, then those that can
-    still win. Stop at any moment and run the same command again: it goes on.
+    Combinations race on representative pairs: the cheap ones first, then those that can still
+    win. After an interruption run the same command again: it continues.
     """
     began = time.monotonic()
     from aerocues.cli.durations import parse_duration
@@ -182,7 +183,7 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
     )
 
 
-def _shrunk(dataset: Dataset, max_width: int) -> int:
+def _shrunk(dataset: Dataset, max_width: int | None) -> int:
     """The width that images were shrunk to; 0 where they are small enough as they are."""
     if not max_width:
         return 0

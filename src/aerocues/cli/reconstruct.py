@@ -10,7 +10,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from aerocues.cli.run import LEAST_MEMORY
+from aerocues.cli.options import (
+    EQUALIZE,
+    METHOD_PRESET,
+    CombinationsOption,
+    MaxKeypointsOption,
+    MaxWidthOption,
+    MemoryLimitOption,
+    PairsOption,
+    RetryFailedOption,
+    SeedOption,
+    SequencesOption,
+    SubsetOption,
+    WorkersOption,
+)
 
 if TYPE_CHECKING:
     from aerocues.cli.reconstruction_progress import Reporter
@@ -42,95 +55,74 @@ def reconstruct(
     ],
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="MODELS", help="Folder: made or continued."),
+        typer.Option(
+            "-o", "--output", metavar="MODELS", help="Folder of the models, created or continued."
+        ),
     ],
-    combinations: Annotated[
-        str | None, typer.Option(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,SIFT-SIFT-L2-BF'.")
-    ] = None,
+    combinations: CombinationsOption = None,
     results: Annotated[
         Path | None,
         typer.Option(
             "--from",
             metavar="RESULTS",
-            help="Measured results: their best combinations; figures and clouds go there, too.",
+            help="Use the best combinations of these results, and add the figures to them.",
         ),
     ] = None,
     top: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="How many of the best; 10 by default.")
-    ] = None,
-    pairs: Annotated[
-        str | None,
+        int | None,
         typer.Option(
-            metavar="HOW",
-            help="gps[:K|:50m], exhaustive, consecutive[:K] or a file; gps where images have it.",
+            min=1, metavar="N", help="Number of best combinations of --from; 10 by default."
         ),
     ] = None,
-    subset: Annotated[
-        str | None,
-        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
-    ] = None,
-    sequences: Annotated[
-        str | None, typer.Option(metavar="NAME", help="This project only, of several.")
-    ] = None,
-    max_keypoints: Annotated[
-        int, typer.Option(min=0, metavar="N", help="The strongest of an image; 0: all.")
-    ] = 8000,
-    max_width: Annotated[
-        int | None,
-        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
-    ] = None,
-    equalize: Annotated[
-        str | None, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
-    ] = None,
+    pairs: PairsOption = None,
+    subset: SubsetOption = None,
+    sequences: SequencesOption = None,
+    max_keypoints: MaxKeypointsOption = 8000,
+    max_width: MaxWidthOption = None,
+    equalize: Annotated[str | None, EQUALIZE] = None,
     intrinsics: Annotated[
-        Intrinsics, typer.Option(help="Whether the mapper adjusts focal length and distortion.")
+        Intrinsics, typer.Option(help="Keep or refine focal length and distortion.")
     ] = Intrinsics.FIXED,
     focal_length: Annotated[
-        float | None, typer.Option(metavar="PIXELS", help="In place of what EXIF tells.")
+        float | None,
+        typer.Option(metavar="PIXELS", help="Focal length, in place of the one in EXIF."),
     ] = None,
-    mapper: Annotated[Mapper, typer.Option(help="Of COLMAP.")] = Mapper.INCREMENTAL,
+    mapper: Annotated[Mapper, typer.Option(help="COLMAP mapper.")] = Mapper.INCREMENTAL,
     reference: Annotated[
         str | None,
         typer.Option(
-            metavar="COMBINATION", help="To whose cloud distances are; else the largest model."
+            metavar="COMBINATION",
+            help="Reference of the cloud distances; by default the largest model.",
         ),
     ] = None,
-    preset: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Parameters of the methods.")
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
-    ] = 0,
+    preset: Annotated[str | None, METHOD_PRESET] = None,
+    seed: SeedOption = 0,
     colours: Annotated[
         bool, typer.Option("--colours/--no-colours", help="Colour the points.")
     ] = True,
     undistort: Annotated[
-        bool, typer.Option("--undistort", help="Write images for a dense step, too.")
+        bool,
+        typer.Option("--undistort", help="Also write undistorted images for dense reconstruction."),
     ] = False,
     features: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", help="Keep features here, and use those there; as in --from by default."
+            metavar="DIR",
+            help="Folder of features, reused and extended; by default the one of --from.",
         ),
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
-    ] = None,
+    workers: WorkersOption = None,
     time_limit: Annotated[
-        float, typer.Option(min=0.001, metavar="SECONDS", help="CPU time of one stage.")
+        float, typer.Option(min=0.001, metavar="SECONDS", help="CPU time limit of one stage.")
     ] = 1800.0,
-    memory_limit: Annotated[
-        float | None, typer.Option(min=LEAST_MEMORY, metavar="GB", help="Memory of a process.")
-    ] = None,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Try again what failed on this machine.")
-    ] = False,
+    memory_limit: MemoryLimitOption = None,
+    retry_failed: RetryFailedOption = False,
 ) -> None:
-    """Make a COLMAP model of a scene with each combination chosen.
+    """Make a COLMAP model of a scene with each chosen combination.
 
-    All of them get the same pairs, cameras and settings. Each model is kept as soon as it is
-    there: stop at any moment and run the same command again to go on. Ends with exit code 1 if
-    no model in the folder is a success.
+    All combinations get the same pairs, cameras and settings. Each model is saved at once. After
+    an interruption run the same command again: it continues. The exit code is 1 if no model in
+    the folder succeeded.
     """
     from aerocues.cli.interruption import interruptible
     from aerocues.errors import ReconstructionError

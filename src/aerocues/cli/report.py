@@ -1,4 +1,4 @@
-"""`aerocues report`: one page that shows everything."""
+"""`aerocues report`: one page with all results."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.options import ResultsArguments
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -35,34 +36,42 @@ class Format(StrEnum):
 
 
 def report(
-    folders: Annotated[
-        list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed ones.")
-    ],
+    folders: ResultsArguments,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="report.html; Markdown: standard output."
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Page to write; by default report.html. Markdown goes to standard output.",
         ),
     ] = None,
     form: Annotated[
-        Format, typer.Option("--format", help="A page, or a short text for chat or review.")
+        Format, typer.Option("--format", help="A page (html), or a short text (markdown).")
     ] = Format.HTML,
     title: Annotated[str | None, typer.Option(metavar="TEXT", help="Title of the page.")] = None,
     show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     figures: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write figures for a paper there, as SVG and PDF."),
+        typer.Option(
+            metavar="DIR", help="Write figures for a paper to this folder, as SVG and PDF."
+        ),
     ] = None,
     images: Annotated[
         list[str] | None,
-        typer.Option(metavar="DATASET", help="Where images are that have moved: oxford:DIR."),
+        typer.Option(metavar="DATASET", help="New place of moved images, such as oxford:DIR."),
     ] = None,
     pictures: Annotated[
         int,
-        typer.Option(min=0, metavar="N", help="Combinations of a data set shown in pictures."),
+        typer.Option(min=0, metavar="N", help="Number of combinations with pictures, per dataset."),
     ] = 4,
     max_megabytes: Annotated[
-        float, typer.Option(min=5, metavar="MB", help="Leave out pictures and clouds beyond it.")
+        float,
+        typer.Option(
+            min=5,
+            metavar="MB",
+            help="Size limit of the page: pictures and clouds beyond it are left out.",
+        ),
     ] = 15,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
@@ -72,13 +81,13 @@ def report(
     aggregation: AggregationOption = None,
     reconstruction: ReconstructionOption = None,
     resamples: Annotated[
-        int, typer.Option(min=2, metavar="N", help="How often the pairs are drawn anew.")
+        int, typer.Option(min=2, metavar="N", help="Number of bootstrap resamples.")
     ] = 1000,
     seed: SeedOption = 0,
 ) -> None:
-    """Show everything in one interactive page.
+    """Write all results into one interactive page.
 
-    It needs no network. Several results are set side by side: data sets, and machines.
+    The page needs no network. Several results (datasets or machines) are shown side by side.
     """
     import aerocues
     from aerocues.cli.interruption import interruptible

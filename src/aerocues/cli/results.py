@@ -1,4 +1,4 @@
-"""`aerocues results`: gets the rows out of a results folder."""
+"""`aerocues results`: exports the rows of a results folder."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.options import JsonOption, ResultsArgument
 from aerocues.cli.output import STANDARD_OUTPUT, write_table
 
 if TYPE_CHECKING:
@@ -19,12 +20,10 @@ TOP = 5
 
 
 def results(
-    folder: Annotated[
-        Path, typer.Argument(metavar="RESULTS", help="A results folder or a packed one.")
-    ],
+    folder: ResultsArgument,
     sql: Annotated[
         str | None,
-        typer.Option(metavar="QUERY", help="A query over the table 'results', not all its rows."),
+        typer.Option(metavar="QUERY", help="SQL query over the table 'results'."),
     ] = None,
     csv: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write CSV; - is standard output.")
@@ -33,21 +32,21 @@ def results(
         str | None, typer.Option(metavar="FILE", help="Write Parquet; - is standard output.")
     ] = None,
     markdown: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write a Markdown table, rounded.")
+        str | None, typer.Option(metavar="FILE", help="Write a Markdown table of rounded values.")
     ] = None,
     latex: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write a LaTeX table, rounded.")
+        str | None, typer.Option(metavar="FILE", help="Write a LaTeX table of rounded values.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: JsonOption = False,
     columns: Annotated[
-        bool, typer.Option("--columns", help="List the columns and what they mean.")
+        bool, typer.Option("--columns", help="List the columns with their meaning.")
     ] = False,
     pack: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Pack all that the folder holds into one zip file."),
+        typer.Option(metavar="FILE", help="Pack the whole folder into one zip file."),
     ] = None,
     top: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Combinations in the summary.")
+        int, typer.Option(min=1, metavar="N", help="Number of combinations in the summary.")
     ] = TOP,
 ) -> None:
     """Print a summary, answer a query, or write the rows to a file."""
@@ -59,9 +58,11 @@ def results(
     if len(asked) > 1:
         raise typer.BadParameter(f"choose one of {', '.join(f'--{form}' for form in targets)}")
     if columns and (asked or sql is not None or pack):
-        raise typer.BadParameter("--columns only lists them; leave the other options out")
+        raise typer.BadParameter("--columns cannot be combined with other options")
     if pack and (asked or sql is not None):
-        raise typer.BadParameter("--pack takes all that there is; leave the other options out")
+        raise typer.BadParameter(
+            "--pack cannot be combined with other options: it packs the whole folder"
+        )
     found = aerocues.Results(folder)
     if pack:
         _pack(found, pack)

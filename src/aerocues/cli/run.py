@@ -10,6 +10,27 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.options import (
+    CombinationsOption,
+    DatasetArgument,
+    DescriptorsOption,
+    DetectorsOption,
+    EqualizeOption,
+    EverythingOption,
+    FeaturesOption,
+    MaxKeypointsOption,
+    MaxWidthOption,
+    MemoryLimitOption,
+    MethodPresetOption,
+    PairsOption,
+    RetryFailedOption,
+    SeedOption,
+    SequencesOption,
+    SubsetOption,
+    TopOption,
+    WorkersOption,
+)
+
 if TYPE_CHECKING:
     import polars as pl
 
@@ -19,8 +40,6 @@ if TYPE_CHECKING:
     from aerocues.scoring.measured import Measured
 
 MEGABYTES = 1024
-# A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
-LEAST_MEMORY = 0.5
 # As `aerocues.evaluation.passes.TIMED_PAIRS`, which takes longer to import than help may take.
 TIMED_PAIRS = 5
 
@@ -41,76 +60,50 @@ class Timing(StrEnum):
 
 
 def run(
-    dataset: Annotated[
-        str,
-        typer.Argument(
-            metavar="DATASET", help="A folder, or one of the kinds that 'aerocues datasets' lists."
-        ),
-    ],
+    dataset: DatasetArgument,
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="DIR", help="Results folder: made or continued."),
+        typer.Option("-o", "--output", metavar="DIR", help="Results folder, created or continued."),
     ],
-    combinations: Annotated[
-        str | None, typer.Option(metavar="GLOBS", help="Such as 'ORB-*-HAM-BF,!*-BOOST-*'.")
-    ] = None,
-    detectors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
-    descriptors: Annotated[str | None, typer.Option(metavar="GLOBS", help="Keep these.")] = None,
-    everything: Annotated[
-        bool, typer.Option("--all", help="All that can run, not only those that mean something.")
-    ] = False,
-    preset: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME", help="Parameters: default, thesis, tuned, or a preset's file."
-        ),
-    ] = "default",
-    max_keypoints: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
-    ] = 0,
+    combinations: CombinationsOption = None,
+    detectors: DetectorsOption = None,
+    descriptors: DescriptorsOption = None,
+    everything: EverythingOption = False,
+    preset: MethodPresetOption = "default",
+    max_keypoints: MaxKeypointsOption = 0,
     spread: Annotated[
-        bool, typer.Option("--spread", help="Keep the strongest of each part of the image.")
-    ] = False,
-    pairs: Annotated[
-        str | None,
+        bool,
         typer.Option(
-            metavar="HOW",
-            help="consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file of pairs.",
+            "--spread", help="With --max-keypoints: spread them over the parts of the image."
         ),
-    ] = None,
-    subset: Annotated[
-        str | None,
-        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
-    ] = None,
+    ] = False,
+    pairs: PairsOption = None,
+    subset: SubsetOption = None,
     limit: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="The first N pairs only.")
+        int | None, typer.Option(min=1, metavar="N", help="Use only the first N pairs.")
     ] = None,
-    sequences: Annotated[
-        str | None, typer.Option(metavar="GLOBS", help="These sequences only, such as 'graf,b*'.")
-    ] = None,
-    max_width: Annotated[
-        int | None,
-        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
-    ] = None,
-    equalize: Annotated[
-        str, typer.Option(metavar="HOW", help="Illumination: none, histogram or clahe.")
-    ] = "none",
-    workers: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
-    ] = None,
+    sequences: SequencesOption = None,
+    max_width: MaxWidthOption = None,
+    equalize: EqualizeOption = "none",
+    workers: WorkersOption = None,
     engine: Annotated[
-        Engine, typer.Option(help="Where: processes on this machine, or a Dask cluster.")
+        Engine, typer.Option(help="Run on this machine (local) or on a Dask cluster (dask).")
     ] = Engine.LOCAL,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Of Dask, such as tcp://host:8786.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Address of the Dask scheduler, such as tcp://host:8786."
+        ),
     ] = None,
     resource: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only Dask workers that offer this resource.")
+        str | None,
+        typer.Option(metavar="NAME", help="Use only Dask workers that offer this resource."),
     ] = None,
     timing: Annotated[
         Timing,
         typer.Option(
-            help="exclusive: some pairs once more, alone; shared: one pass; estimated: and quicker."
+            help="exclusive: measure some pairs again, one call at a time; shared: one pass; "
+            "estimated: one pass with fast exact matching."
         ),
     ] = Timing.EXCLUSIVE,
     timing_pairs: Annotated[
@@ -118,38 +111,26 @@ def run(
         typer.Option(
             min=0,
             metavar="K",
-            help=f"Pairs that are timed alone; 0: all; {TIMED_PAIRS} by default.",
+            help=f"Pairs to time alone; {TIMED_PAIRS} by default, 0: all.",
         ),
     ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
-    ] = 0,
+    seed: SeedOption = 0,
     timeout: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="CPU time that one call may use; 600 by default."),
+        typer.Option(metavar="SECONDS", help="CPU time limit of one call; 600 by default."),
     ] = None,
-    memory_limit: Annotated[
-        float | None,
-        typer.Option(min=LEAST_MEMORY, metavar="GB", help="Memory of a worker; its share of 80 %."),
-    ] = None,
-    features: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Keep features here, and take what is there."),
-    ] = None,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Measure again what failed on this machine.")
-    ] = False,
+    memory_limit: MemoryLimitOption = None,
+    features: FeaturesOption = None,
+    retry_failed: RetryFailedOption = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show the plan; measure and write nothing.")
+        bool, typer.Option("--dry-run", help="Show the plan without measuring or writing anything.")
     ] = False,
-    top: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Length of the table at the end.")
-    ] = 15,
+    top: TopOption = 15,
 ) -> None:
     """Measure combinations on the image pairs of a dataset.
 
-    Each result is kept as soon as it is there. Stop at any moment and run the same command again:
-    what is finished is not measured twice.
+    Each result is saved at once. After an interruption run the same command again: it continues,
+    and nothing is measured twice.
     """
     from aerocues.cli.cluster import engine_on
     from aerocues.cli.interruption import interruptible

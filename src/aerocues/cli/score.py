@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.options import JsonOption, ResultsArgument, TopOption
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
     AggregationOption,
@@ -16,7 +17,6 @@ from aerocues.cli.scoring import (
     FailuresOption,
     PresetOption,
     ReconstructionOption,
-    ResultsArgument,
     SeedOption,
     WeightsOption,
 )
@@ -53,30 +53,36 @@ def score(
     reconstruction: ReconstructionOption = None,
     dataset: DatasetOption = None,
     resamples: Annotated[
-        int, typer.Option(min=2, metavar="N", help="How often the pairs are drawn anew.")
+        int, typer.Option(min=2, metavar="N", help="Number of bootstrap resamples.")
     ] = 1000,
     seed: SeedOption = 0,
     interval: Annotated[
-        Interval, typer.Option(help="Of the score: of joint resamples, or the thesis's.")
+        Interval,
+        typer.Option(help="Score interval: joint resampling, or pairwise as in the thesis."),
     ] = Interval.JOINT,
-    test: Annotated[Test, typer.Option(help="Of the difference from the best.")] = Test.BOOTSTRAP,
-    top: Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")] = 15,
+    test: Annotated[
+        Test, typer.Option(help="Significance test against the best.")
+    ] = Test.BOOTSTRAP,
+    top: TopOption = 15,
     top_k: Annotated[
-        int, typer.Option(min=1, metavar="K", help="Places that count for probability_top.")
+        int,
+        typer.Option(
+            min=1, metavar="K", help="Number of first places that probability_top counts."
+        ),
     ] = 5,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, of all.")] = False,
+    as_json: JsonOption = False,
     csv: Annotated[
         str | None,
-        typer.Option(metavar="FILE", help="Write the ranking of all as CSV; - is standard output."),
+        typer.Option(metavar="FILE", help="Write the whole ranking as CSV; - is standard output."),
     ] = None,
     latex: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the best N for a paper.")
+        str | None, typer.Option(metavar="FILE", help="Write the best N as a LaTeX table.")
     ] = None,
     markdown: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the best N as Markdown.")
+        str | None, typer.Option(metavar="FILE", help="Write the best N as a Markdown table.")
     ] = None,
 ) -> None:
-    """Rank combinations by CUES and tell how sure the ranking is."""
+    """Rank combinations by CUES, with uncertainty intervals."""
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.ranking_table import facts, print_scores

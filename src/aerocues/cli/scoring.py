@@ -1,9 +1,8 @@
-"""The options that all commands which score have in common."""
+"""Options that the scoring commands have in common."""
 
 from __future__ import annotations
 
 from enum import StrEnum
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -20,13 +19,12 @@ class Failures(StrEnum):
     OMIT = "omit"
 
 
-ResultsArgument = Annotated[
-    Path, typer.Argument(metavar="RESULTS", help="A results folder or a packed one.")
-]
 PresetOption = Annotated[
     str | None,
     typer.Option(
-        "--preset", metavar="NAME", help="default or thesis; by default what suits the results."
+        "--preset",
+        metavar="NAME",
+        help="Scoring preset: default or thesis; by default the one that suits the results.",
     ),
 ]
 CriteriaOption = Annotated[
@@ -34,26 +32,29 @@ CriteriaOption = Annotated[
     typer.Option(
         "--criteria",
         metavar="NAMES",
-        help="Such as precision,inliers (docs/scoring.md lists all); by default those of the "
-        "preset.",
+        help="Criteria, such as precision,inliers (all in docs/scoring.md); by default those of "
+        "the preset.",
     ),
 ]
 ReconstructionOption = Annotated[
     bool | None,
     typer.Option(
         "--reconstruction/--no-reconstruction",
-        help="Score the 3D models, too; by default if most combinations have one.",
+        help="Also score the 3D models; by default if most combinations have one.",
         show_default=False,
     ),
 ]
 FailuresOption = Annotated[
     Failures | None,
-    typer.Option("--failures", help="What a failed pair counts as; by default as in the preset."),
+    typer.Option(
+        "--failures",
+        help="Count failed pairs as the worst value, or omit them; by default as in the preset.",
+    ),
 ]
 AlphaOption = Annotated[
     float | None,
     typer.Option(
-        "--alpha", metavar="POWER", help="Power of the normalised values; by default 0.5."
+        "--alpha", metavar="POWER", help="Exponent of the normalised values; by default 0.5."
     ),
 ]
 WeightsOption = Annotated[
@@ -61,7 +62,8 @@ WeightsOption = Annotated[
     typer.Option(
         "--weights",
         metavar="NAMES",
-        help="Such as entropy,critic (docs/scoring.md lists all); by default those of the preset.",
+        help="Weighting methods, such as entropy,critic (all in docs/scoring.md); by default "
+        "those of the preset.",
     ),
 ]
 AggregationOption = Annotated[
@@ -69,12 +71,12 @@ AggregationOption = Annotated[
     typer.Option(
         "--aggregation",
         metavar="HOW",
-        help="arithmetic (the default), geometric, harmonic or trimmed.",
+        help="Mean of the weights: arithmetic (the default), geometric, harmonic or trimmed.",
     ),
 ]
 DatasetOption = Annotated[
     str | None,
-    typer.Option("--dataset", metavar="NAME", help="Which, where the folder holds several."),
+    typer.Option("--dataset", metavar="NAME", help="Dataset to score, if the folder has several."),
 ]
 SeedOption = Annotated[
     int, typer.Option("--seed", min=0, max=2**31 - 1, metavar="N", help="Seed of the resampling.")
@@ -100,7 +102,7 @@ def table_and_settings(
     weights: str | None = None,
     aggregation: str | None = None,
 ) -> tuple[MeasuredTable, ScoreSettings]:
-    """What is to be scored and how, from the options."""
+    """The table to score and the settings, from the options."""
     from aerocues.scoring.measured import settings_from, table_of
 
     found = table_of(

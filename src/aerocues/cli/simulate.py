@@ -1,4 +1,4 @@
-"""`aerocues simulate`: flies a survey over a scene that never was, with exact ground truth."""
+"""`aerocues simulate`: flies a survey over an artificial scene, with exact ground truth."""
 
 from __future__ import annotations
 
@@ -9,57 +9,64 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from aerocues.cli.console import count
+from aerocues.cli.options import (
+    FieldOfViewOption,
+    FlightOption,
+    ImageFormatOption,
+    SeedOption,
+    SubsetOption,
+    SurveyOption,
+)
 
 if TYPE_CHECKING:
     from aerocues.simulation.flight import Settings
 
 
 def simulate(
-    output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Folder of the flight.")
-    ],
-    survey: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME", help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."
-        ),
-    ] = "mini",
-    subset: Annotated[
-        str | None,
-        typer.Option(metavar="GLOBS", help="These images or folders only: 'Layer3/pitch-90_yaw0'."),
-    ] = None,
+    output: FlightOption,
+    survey: SurveyOption = "mini",
+    subset: SubsetOption = None,
     scene: Annotated[
         str,
-        typer.Option(metavar="NAME", help="What is flown over: suburb, fields or industrial."),
+        typer.Option(metavar="NAME", help="Scene: suburb, fields or industrial."),
     ] = "suburb",
-    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of the scene and the noise.")] = 0,
-    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1000x665",
-    fov: Annotated[float, typer.Option(metavar="DEGREES", help="Horizontal field of view.")] = 90.0,
+    seed: SeedOption = 0,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Image size in pixels.")] = "1000x665",
+    fov: FieldOfViewOption = 90.0,
     sun: Annotated[
-        str, typer.Option(metavar="AZ,EL", help="Azimuth from north, elevation; degrees.")
+        str,
+        typer.Option(
+            metavar="AZ,EL",
+            help="Position of the sun: azimuth from north and elevation, in degrees.",
+        ),
     ] = "140,48",
-    haze: Annotated[float, typer.Option(min=0.0, metavar="AMOUNT", help="0 for clear air.")] = 0.2,
+    haze: Annotated[
+        float, typer.Option(min=0.0, metavar="AMOUNT", help="Haze; 0: clear air.")
+    ] = 0.2,
     glints: Annotated[
         float,
         typer.Option(
-            min=0.0, metavar="AMOUNT", help="Leaves and roofs look different from each side."
+            min=0.0,
+            metavar="AMOUNT",
+            help="How much leaves and roofs change with the viewing direction.",
         ),
     ] = 1.0,
     noise: Annotated[
-        float, typer.Option(min=0.0, metavar="AMOUNT", help="Of the sensor; 0 for none.")
+        float, typer.Option(min=0.0, metavar="AMOUNT", help="Sensor noise; 0: none.")
     ] = 1.0,
     blur: Annotated[
-        float, typer.Option(min=0.0, metavar="PIXELS", help="Of the lens, pixels.")
+        float, typer.Option(min=0.0, metavar="PIXELS", help="Lens blur in pixels.")
     ] = 0.55,
     motion: Annotated[
-        float, typer.Option(min=0.0, metavar="PIXELS", help="Motion blur, pixels.")
+        float, typer.Option(min=0.0, metavar="PIXELS", help="Motion blur in pixels.")
     ] = 0.0,
     exposure_jitter: Annotated[
-        float, typer.Option(min=0.0, metavar="STOPS", help="From image to image, stops.")
+        float,
+        typer.Option(min=0.0, metavar="STOPS", help="Exposure changes between images, in stops."),
     ] = 0.0,
     interval: Annotated[
         float,
-        typer.Option(min=0.0, metavar="SECONDS", help="Seconds between images: cars drive on."),
+        typer.Option(min=0.0, metavar="SECONDS", help="Time between images, in which cars move."),
     ] = 0.0,
     wind: Annotated[
         float,
@@ -68,12 +75,12 @@ def simulate(
             "--wind-trees",
             min=0.0,
             metavar="METRES",
-            help="Moves crowns by so many metres (--interval).",
+            help="How far the wind moves tree crowns between images; needs --interval.",
         ),
     ] = 0.0,
-    form: Annotated[str, typer.Option("--format", metavar="NAME", help="png or jpeg.")] = "png",
+    form: ImageFormatOption = "png",
 ) -> None:
-    """Simulate a survey flight: images, poses, depth. Goes on where an earlier run broke off."""
+    """Simulate a survey flight: images, poses and depth. Continues an interrupted flight."""
     from aerocues.simulation.flight import Settings
     from aerocues.simulation.lighting import Weather
     from aerocues.simulation.sensor import Sensor
@@ -116,9 +123,9 @@ def _fly(folder: Path, spec: str, settings: Settings, subset: str | None) -> Non
 
 
 def numbers(text: str, mark: str, option: str, example: str) -> tuple[float, float]:
-    """Two numbers with a mark between them, as an option has them."""
+    """The two numbers of an option, which `mark` separates."""
     try:
         first, second = (float(part) for part in text.lower().split(mark))
     except ValueError as error:
-        raise typer.BadParameter(f"{option} {text}: write it like {example}") from error
+        raise typer.BadParameter(f"{option} must be like {example}, got {text}") from error
     return first, second

@@ -1,4 +1,4 @@
-"""`aerocues status`: how far a run has got."""
+"""`aerocues status`: the progress of a run."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
+
+from aerocues.cli.options import JsonOption, ResultsArgument
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -23,12 +25,10 @@ OPENCV_PREFIX = re.compile(r"OpenCV\([^)]*\) \S+: error: ")
 
 
 def status(
-    folder: Annotated[
-        Path, typer.Argument(metavar="RESULTS", help="A results folder or a packed one.")
-    ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    folder: ResultsArgument,
+    as_json: JsonOption = False,
 ) -> None:
-    """Show what is done, left, failed and left out, with reasons."""
+    """Show the progress of a run, with reasons of failures."""
     import aerocues
 
     found = aerocues.Results(folder).status()

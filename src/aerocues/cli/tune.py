@@ -1,4 +1,4 @@
-"""`aerocues tune`: parameters that suit a method, as a preset."""
+"""`aerocues tune`: finds parameters of methods, and writes them as a preset."""
 
 from __future__ import annotations
 
@@ -8,6 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from aerocues.cli.options import (
+    MaxKeypointsOption,
+    MaxWidthOption,
+    PairsOption,
+    SeedOption,
+    WorkersOption,
+)
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,60 +30,54 @@ def tune(
         str,
         typer.Argument(
             metavar="METHODS",
-            help="Such as LATCH, detector:ORB, a combination, several with commas, or 'all'.",
+            help="Methods (LATCH, detector:ORB) or combinations, separated by commas, or 'all'.",
         ),
     ],
     datasets: Annotated[
-        list[str], typer.Argument(metavar="DATASET...", help="Folders or kinds of data sets.")
+        list[str], typer.Argument(metavar="DATASET...", help="Folders or kinds of datasets.")
     ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="The preset: a JSON file.")
+        Path, typer.Option("-o", "--output", metavar="FILE", help="Preset file to write (JSON).")
     ],
     validate: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="DATASET", help="Judge on this one; by default on scenes kept for that."
+            metavar="DATASET", help="Validate on this dataset; by default on held-out scenes."
         ),
     ] = None,
     grid: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help='Values to try: {"threshold": [5, 10, 20]} in JSON.'),
+        typer.Option(
+            metavar="FILE", help='JSON file of values to try, such as {"threshold": [5, 10, 20]}.'
+        ),
     ] = None,
     objective: Annotated[
-        str, typer.Option(metavar="CRITERION", help="cues, or a criterion such as excess_inliers.")
+        str,
+        typer.Option(
+            metavar="CRITERION", help="Objective: cues, or a criterion such as excess_inliers."
+        ),
     ] = "cues",
     budget: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="Such as 30min; counted anew where a search goes on."),
+        typer.Option(metavar="TIME", help="Time limit of this call, such as 30min."),
     ] = None,
-    max_keypoints: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Keep the strongest N of an image; 0: all.")
-    ] = 0,
-    pairs: Annotated[
-        str | None, typer.Option(help="How images are paired, where the data set leaves that open.")
-    ] = None,
+    max_keypoints: MaxKeypointsOption = 0,
+    pairs: PairsOption = None,
     max_pairs: Annotated[
         int,
-        typer.Option(min=3, metavar="N", help="Pairs to choose by, and as many to judge by."),
+        typer.Option(min=3, metavar="N", help="Number of training pairs, and of validation pairs."),
     ] = 16,
-    max_width: Annotated[
-        int | None,
-        typer.Option(metavar="PIXELS", help="Shrink images that are wider; 0: none."),
-    ] = None,
+    max_width: MaxWidthOption = None,
     results: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Folder of the measurements; FILE-search by default."),
+        typer.Option(metavar="DIR", help="Folder of the measurements; by default FILE-search."),
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; one a core by default.")
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all that is random.")
-    ] = 0,
+    workers: WorkersOption = None,
+    seed: SeedOption = 0,
 ) -> None:
-    """Search parameters on some scenes and keep those that pay on others.
+    """Search parameters on some scenes and keep those that also help on other scenes.
 
-    Stop at any moment and run the same command again: it goes on.
+    After an interruption run the same command again: it continues.
     """
     from aerocues.cli.durations import parse_duration
     from aerocues.cli.interruption import Interrupted, interruptible

@@ -1,4 +1,4 @@
-"""`aerocues validate`: how far a ranking can be trusted."""
+"""`aerocues validate`: how robust a ranking is."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.options import JsonOption, ResultsArgument
 from aerocues.cli.output import print_json
 from aerocues.cli.scoring import (
     AggregationOption,
@@ -15,7 +16,6 @@ from aerocues.cli.scoring import (
     FailuresOption,
     PresetOption,
     ReconstructionOption,
-    ResultsArgument,
     SeedOption,
     WeightsOption,
 )
@@ -42,13 +42,13 @@ def validate(
         str | None, typer.Option(metavar="CRITERION", help="Second axis of the Pareto front.")
     ] = None,
     seed: SeedOption = 0,
-    top: Annotated[int, typer.Option(min=2, metavar="N", help="Length of lists.")] = 10,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    top: Annotated[int, typer.Option(min=2, metavar="N", help="Length of the lists.")] = 10,
+    as_json: JsonOption = False,
 ) -> None:
-    """Tell how far the ranking can be trusted.
+    """Show how robust the ranking is.
 
-    How it changes with each choice, what other methods make of the same values, and what stands
-    behind it.
+    How it changes with each setting, how other decision methods rank the same values, and which
+    criteria drive it.
     """
     import aerocues
     from aerocues.cli.interruption import interruptible

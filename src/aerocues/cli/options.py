@@ -1,0 +1,114 @@
+"""Options that several commands have in common, each defined once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+# A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
+LEAST_MEMORY = 0.5
+
+DatasetArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="DATASET",
+        help="A folder of images, or one of the kinds that 'aerocues datasets' lists.",
+    ),
+]
+ResultsArgument = Annotated[
+    Path, typer.Argument(metavar="RESULTS", help="A results folder or packed results.")
+]
+ResultsArguments = Annotated[
+    list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed results.")
+]
+CombinationsOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="GLOBS", help="Use only these combinations, such as 'ORB-*-HAM-BF,!*-BOOST-*'."
+    ),
+]
+DetectorsOption = Annotated[
+    str | None, typer.Option(metavar="GLOBS", help="Use only these detectors.")
+]
+DescriptorsOption = Annotated[
+    str | None, typer.Option(metavar="GLOBS", help="Use only these descriptors.")
+]
+EverythingOption = Annotated[
+    bool,
+    typer.Option("--all", help="Use all combinations that can run, not only the meaningful ones."),
+]
+METHOD_PRESET = typer.Option(
+    metavar="NAME", help="Method parameters: default, thesis, tuned or a preset file."
+)
+MethodPresetOption = Annotated[str, METHOD_PRESET]
+MaxKeypointsOption = Annotated[
+    int,
+    typer.Option(
+        min=0, metavar="N", help="Keep the N strongest keypoints of each image; 0 keeps all."
+    ),
+]
+PairsOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="HOW",
+        help="Image pairs: consecutive[:K], exhaustive, gps[:K|:50m], overlap:0.3-0.9 or a file.",
+    ),
+]
+SubsetOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="GLOBS", help="Use only these images or folders, such as 'Layer3/pitch-90_yaw0'."
+    ),
+]
+SequencesOption = Annotated[
+    str | None,
+    typer.Option(metavar="GLOBS", help="Use only these sequences, such as 'graf,b*'."),
+]
+MaxWidthOption = Annotated[
+    int | None,
+    typer.Option(min=0, metavar="PIXELS", help="Shrink wider images to this width; 0: full size."),
+]
+EQUALIZE = typer.Option(metavar="HOW", help="Equalise the illumination: none, histogram or clahe.")
+EqualizeOption = Annotated[str, EQUALIZE]
+WorkersOption = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="N", help="Worker processes; by default one per core."),
+]
+MemoryLimitOption = Annotated[
+    float | None,
+    typer.Option(
+        min=LEAST_MEMORY,
+        metavar="GB",
+        help="Memory limit of a worker; by default its share of 80 % of the memory.",
+    ),
+]
+FeaturesOption = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="Folder of features: reuse those in it, and add new ones."),
+]
+RetryFailedOption = Annotated[
+    bool, typer.Option("--retry-failed", help="Repeat what failed on this machine.")
+]
+SeedOption = Annotated[
+    int,
+    typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all random choices."),
+]
+TopOption = Annotated[int, typer.Option(min=1, metavar="N", help="Length of the table.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+FlightOption = Annotated[
+    Path, typer.Option("-o", "--output", metavar="DIR", help="Folder of the flight.")
+]
+SurveyOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME", help="airsimnh, airsimnh-natural, mini, or a JSON file with a mission."
+    ),
+]
+FieldOfViewOption = Annotated[
+    float, typer.Option("--fov", metavar="DEGREES", help="Horizontal field of view.")
+]
+ImageFormatOption = Annotated[
+    str, typer.Option("--format", metavar="NAME", help="Image format: png or jpeg.")
+]
