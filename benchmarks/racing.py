@@ -20,8 +20,8 @@ import polars as pl
 from numpy.typing import NDArray
 from replay import ReplayEvaluator
 
+from aerocues.results.combination_columns import combination_name
 from aerocues.results.measured_results import Results
-from aerocues.scoring.combinations import METHODS
 from aerocues.scoring.criteria import CRITERIA, Criterion
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
@@ -50,7 +50,7 @@ def published(dataset: str) -> tuple[list[str], Values, Values, NDArray[np.int64
         (pl.col("dataset") == dataset)
         & (pl.col("platform") == "desktop")
         & ~((pl.col("norm") == "l2") & pl.col("descriptor").is_in(BITS))
-    ).with_columns(name=pl.concat_str(["detector", "descriptor", "norm", "matcher"], separator="-"))
+    ).with_columns(name=combination_name())
     alternatives = table["name"].unique(maintain_order=True).to_list()
     position = {name: i for i, name in enumerate(alternatives)}
     rows = np.array([position[name] for name in table["name"]])
@@ -74,7 +74,7 @@ def measured(folder: str) -> tuple[list[str], Values, Values, NDArray[np.int64],
     """The same of a results folder, and its criteria; brute force costs what exact search does."""
     results = Results(folder)
     table = table_of(results).table
-    rows = results.table().with_columns(name=pl.concat_str(METHODS, separator="-"))
+    rows = results.table().with_columns(name=combination_name())
     two = (f"{stage}_seconds_{side}_cpu" for stage in ("detect", "describe") for side in (1, 2))
     match = pl.col("match_seconds_cpu").fill_null(0.0)
     share = pl.col("norm").replace_strict(EXACT_SHARE, return_dtype=pl.Float64)

@@ -23,9 +23,9 @@ from scipy.stats import spearmanr
 import aerocues
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.passes import passes
+from aerocues.results.combination_columns import combination_name
 from aerocues.results.measured_results import Results
 from aerocues.results.store import Store
-from aerocues.scoring.combinations import METHODS
 
 SIZES = (1, 2, 3, 5, 10)
 SEEDS = 10
@@ -34,8 +34,11 @@ SEEDS = 10
 def scored(results: Results) -> pl.DataFrame:
     """Score and median seconds of each combination, by name."""
     scores = aerocues.score(results).frame("combination").select("combination", "score")
-    name = pl.concat_str(METHODS, separator="-").alias("combination")
-    seconds = results.table().group_by(name).agg(pl.median("total_seconds").alias("seconds"))
+    seconds = (
+        results.table()
+        .group_by(combination_name())
+        .agg(pl.median("total_seconds").alias("seconds"))
+    )
     return scores.join(seconds, on="combination").sort("combination")
 
 

@@ -24,7 +24,7 @@ from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES, RECO
 from aerocues.results.schema import Column
 from aerocues.results.statuses import STATUSES
 from aerocues.scoring.criteria import CRITERIA
-from aerocues.scoring.settings import PRESETS as SCORE_PRESETS
+from aerocues.scoring.settings import SCORE_PRESETS
 from aerocues.scoring.weights import WEIGHT_METHODS
 from aerocues.tuning.grids import GRIDS
 

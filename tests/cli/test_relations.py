@@ -8,8 +8,8 @@ from pathlib import Path
 
 import polars as pl
 
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.measured_results import Results
-from aerocues.results.plan_table import METHODS
 from aerocues.results.store import Store
 from tests.cli.conftest import Call
 from tests.report.made_up import folder_of, measured

@@ -24,7 +24,7 @@ from aerocues.reconstruction.images import (
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results
-from aerocues.results.plan_table import METHODS
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.store import Store
 from tests.reconstruction.scenes import write_scene
 from tests.reconstruction.test_clouds import cloud, square

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from aerocues.scoring import PRESETS, DecisionTable, criteria_named
+from aerocues.scoring import SCORE_PRESETS, DecisionTable, criteria_named
 
 PublishedTable = Callable[..., DecisionTable]
 
@@ -33,7 +33,7 @@ def published(shared_data: Path) -> PublishedTable:
             chosen,
             alternative="name",
             repeat="pair",
-            criteria=criteria_named(PRESETS["thesis"].criteria),
+            criteria=criteria_named(SCORE_PRESETS["thesis"].criteria),
         )
 
     return table

@@ -7,7 +7,7 @@ import polars as pl
 import pytest
 
 from aerocues.errors import ScoreError
-from aerocues.scoring import PRESETS, criteria_named
+from aerocues.scoring import SCORE_PRESETS, criteria_named
 from aerocues.scoring.combinations import decision_table, suitable_preset
 from aerocues.scoring.measured import score, settings_from, table_of
 from tests.scoring.measurements import Stored, models, row, rows
@@ -143,7 +143,7 @@ def test_reconstructions_of_others_are_of_no_use() -> None:
 
 
 def test_settings_of_a_preset_can_be_changed() -> None:
-    preset = PRESETS["thesis"]
+    preset = SCORE_PRESETS["thesis"]
     assert settings_from(preset, alpha=None, failures=None) == preset.settings
     changed = settings_from(preset, alpha=0.25, failures="worst")
     assert (changed.alpha, changed.failures) == (0.25, "worst")

@@ -6,7 +6,7 @@ import pytest
 from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective, objective_named
-from aerocues.scoring.settings import PRESETS
+from aerocues.scoring.settings import SCORE_PRESETS
 
 CRITERIA = (
     Criterion("recall", aspect="accuracy"),
@@ -46,10 +46,10 @@ def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", SCORE_PRESETS)
 def test_every_objective_weighs_what_the_presets_measure(name: str, preset: str) -> None:
     objective = objective_named(name)
-    criteria = criteria_named(objective.criteria(PRESETS[preset].criteria))
+    criteria = criteria_named(objective.criteria(SCORE_PRESETS[preset].criteria))
     weights = objective.weights(np.full(len(criteria), 1 / len(criteria)), criteria)
     assert weights.sum() == pytest.approx(1)
     for aspect, share in objective.shares.items():

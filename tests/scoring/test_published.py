@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from aerocues.scoring import PRESETS, DecisionTable, Scores, criteria_named, score
+from aerocues.scoring import SCORE_PRESETS, DecisionTable, Scores, criteria_named, score
 from aerocues.scoring.sensitivity import Variants, by_aggregation, by_alpha
 from tests.scoring.conftest import PublishedTable
 
-THESIS = PRESETS["thesis"]
+THESIS = SCORE_PRESETS["thesis"]
 
 SYNTHETIC = {
     "orb-orb-ham-bf": 0.8821,

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aerocues.errors import ScoreError
-from aerocues.scoring import PRESETS, ScoreSettings, criteria_named
-from aerocues.scoring.settings import preset_named
+from aerocues.scoring import SCORE_PRESETS, ScoreSettings, criteria_named
+from aerocues.scoring.settings import score_preset_named
 
 
 @pytest.mark.parametrize(
@@ -31,9 +31,9 @@ def test_settings_that_do_not_exist(changes: dict[str, Any], message: str) -> No
         replace(ScoreSettings(), **changes)
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", SCORE_PRESETS)
 def test_presets_name_criteria_that_exist(name: str) -> None:
-    preset = preset_named(name)
+    preset = score_preset_named(name)
     assert preset.name == name
     pairs = criteria_named(preset.criteria)
     assert not any(criterion.reconstruction for criterion in pairs)
@@ -42,7 +42,7 @@ def test_presets_name_criteria_that_exist(name: str) -> None:
 
 
 def test_preset_of_the_thesis_is_as_published() -> None:
-    settings = preset_named("thesis").settings
+    settings = score_preset_named("thesis").settings
     assert settings.failures == "omit"
     assert settings.alpha == 0.5
     assert settings.aggregation == "arithmetic"
@@ -51,4 +51,4 @@ def test_preset_of_the_thesis_is_as_published() -> None:
 
 def test_an_unknown_preset() -> None:
     with pytest.raises(ScoreError, match="default, thesis"):
-        preset_named("best")
+        score_preset_named("best")

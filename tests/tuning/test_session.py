@@ -19,7 +19,7 @@ from aerocues.methods.selection import select
 from aerocues.results.metrics import Row
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
-from aerocues.scoring.settings import preset_named as scoring_named
+from aerocues.scoring.settings import score_preset_named
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
@@ -93,7 +93,7 @@ def sit(photos: Path, folder: Path, machine: Machine, budget: float) -> RaceOutc
     evaluator = PairEvaluator(context, asked, Store.create(folder), preset, clock=machine.clock)
     session = Session(Journal.read(folder, "race", budget), clock=machine.clock)
     seen = look_for_overlap(evaluator, machine, dataset.pairs, session)
-    scoring = scoring_named("default")
+    scoring = score_preset_named("default")
     criteria = criteria_named(scoring.criteria)
     criteria_evaluator = ImageEvaluator(
         evaluator, machine, chosen, seen.overlapping, criteria, session

@@ -51,6 +51,7 @@ def _print_folders(made: list[Results]) -> None:
     import polars as pl
 
     from aerocues.cli.console import aligned
+    from aerocues.results.combination_columns import METHODS
 
     lines = []
     for results in made:
@@ -59,9 +60,7 @@ def _print_folders(made: list[Results]) -> None:
             {
                 "results folder": str(results.folder),
                 "rows": len(table),
-                "combinations": table.select(
-                    "detector", "descriptor", "norm", "matcher"
-                ).n_unique(),
+                "combinations": table.select(METHODS).n_unique(),
                 "pairs": table.select("image_1", "image_2").n_unique(),
                 "reconstructions": len(results.reconstructions()),
             }

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import plain_table, print_table, standard_output
+from aerocues.results.combination_columns import METHODS, name_in_row
 
 if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.reconstruction.models import Models
 
-METHODS = ("detector", "descriptor", "norm", "matcher")
 INDENT = "  "
 
 
@@ -45,9 +45,7 @@ def print_models(models: Models) -> None:
     output = plain_table("combination", "status", *headings, numbers=len(headings), gap=1)
     output.columns[0].no_wrap = True
     for row in table.iter_rows(named=True):
-        output.add_row(
-            "-".join(row[name] for name in METHODS), row["status"], *_figures(row, located)
-        )
+        output.add_row(name_in_row(row), row["status"], *_figures(row, located))
     first = table.row(0, named=True)
     title = (
         f"{first['dataset']}: {first['images']} images, {first['pairs']} pairs "
@@ -86,7 +84,7 @@ def _notes(table: pl.DataFrame) -> list[str]:
         lines.append("no combination reconstructs the scene as it was flown")
     told = table.filter((pl.col("status") != "ok") | pl.col("message").is_not_null())
     for row in told.iter_rows(named=True):
-        name = "-".join(row[part] for part in METHODS)
+        name = name_in_row(row)
         line = f"{name}: {row['message'] or row['status']}"
         lines += textwrap.wrap(line, 98, subsequent_indent=INDENT)
     references = table["reference"].drop_nulls().unique().to_list()

@@ -14,6 +14,7 @@ from aerocues.cli.progress import spoken_seconds
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.engine import Doing
 from aerocues.reconstruction.options import ReconstructionObserver
+from aerocues.results.combination_columns import name_in_row
 from aerocues.results.metrics import Row
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ class Reporter(ReconstructionObserver):
     def finished(self, row: Row) -> None:
         self.done += 1
         self._drawn = time.monotonic()
-        name = "-".join(str(row[part]) for part in ("detector", "descriptor", "norm", "matcher"))
+        name = name_in_row(row)
         self._say(f"{self.done} of {self.total}  {name}  {told(row)}")
 
     def _say(self, line: str) -> None:

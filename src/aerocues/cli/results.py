@@ -10,6 +10,7 @@ import typer
 
 from aerocues.cli.options import JsonOption, ResultsArgument
 from aerocues.cli.output import STANDARD_OUTPUT, write_table
+from aerocues.results.combination_columns import METHODS
 
 if TYPE_CHECKING:
     import polars as pl
@@ -121,7 +122,7 @@ def _print_summary(found: Results, top: int) -> None:
     if table.is_empty():
         console.print("there are no rows yet")
     print_medians(table, top)
-    combinations = table.select("detector", "descriptor", "norm", "matcher").n_unique()
+    combinations = table.select(METHODS).n_unique()
     rows = f"{count(len(table), 'row')} of {count(combinations, 'combination')}"
     console.print(Text(f"\n{rows}; {_origin(settings)}"))
     for machine in table["machine"].drop_nulls().unique().sort():

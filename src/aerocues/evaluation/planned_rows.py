@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
-from aerocues.results.plan_table import METHODS, TIMED_ALONE
+from aerocues.results.combination_columns import METHODS
+from aerocues.results.plan_table import TIMED_ALONE
 from aerocues.results.schema import polars_schema
 
 if TYPE_CHECKING:

@@ -75,7 +75,7 @@ class Preset:
                 )
 
 
-PRESETS: tuple[Preset, ...] = (
+METHOD_PRESETS: tuple[Preset, ...] = (
     Preset("default", "parameters of the thesis; a model must beat chance", chance_test=True),
     Preset("thesis", "parameters and protocol of the thesis", chance_test=False),
 )
@@ -86,7 +86,7 @@ TUNED = "tuned"
 
 def preset_names() -> tuple[str, ...]:
     """Names of the presets that aerocues brings along."""
-    return (*(preset.name for preset in PRESETS), TUNED)
+    return (*(preset.name for preset in METHOD_PRESETS), TUNED)
 
 
 def preset_named(name: str) -> Preset:
@@ -97,7 +97,7 @@ def preset_named(name: str) -> Preset:
     SelectionError
         If there is neither, or the file is no preset.
     """
-    for preset in PRESETS:
+    for preset in METHOD_PRESETS:
         if preset.name == name.lower():
             return preset
     if name.lower() == TUNED:

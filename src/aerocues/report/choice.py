@@ -8,6 +8,7 @@ import numpy as np
 
 from aerocues.report.entry import ReportEntry
 from aerocues.report.scores import best_binary, fastest_good
+from aerocues.results.combination_columns import combination_name
 from aerocues.scoring.per_repeat import scores_of_repeats
 
 DETECTOR = 0
@@ -82,13 +83,11 @@ def chosen_pictures(found: ReportEntry, number: int) -> list[Choice]:
 
 def _pairs_by_score(found: ReportEntry, combination: str) -> list[int]:
     """Numbers of the pairs that a combination was measured on, the worst first."""
-    import polars as pl
-
     position = found.combinations.index(combination)
     table = found.ranking.scores.table
     values = scores_of_repeats(found.ranking.scores)[position]
     # A failed pair that is left out of the score is the worst all the same.
     score = dict(zip(map(int, table.repeats), np.nan_to_num(values, nan=-1.0), strict=True))
-    name = pl.concat_str("detector", "descriptor", "norm", "matcher", separator="-")
+    name = combination_name()
     measured = found.rows.filter(name == combination)["pair"].to_list()
     return sorted(measured, key=lambda pair: (score[pair], -pair))

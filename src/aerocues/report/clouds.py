@@ -14,6 +14,7 @@ from aerocues.report.arrays import packed_bytes, packed_floats, packed_scaled
 from aerocues.report.cloud_frames import in_one_frame
 from aerocues.report.entry import ReportEntry
 from aerocues.results.clouds import Cloud
+from aerocues.results.combination_columns import name_in_row
 
 MOST_CLOUDS = 10
 MOST_POINTS = 6000
@@ -103,8 +104,7 @@ def _rows(found: ReportEntry) -> list[Row]:
     ranks = dict(found.ranking.frame("combination").select("combination", "rank").iter_rows())
     rows = found.models.to_dicts()
     for row in rows:
-        methods = (row[each] for each in ("detector", "descriptor", "norm", "matcher"))
-        row["name"] = "-".join(methods)
+        row["name"] = name_in_row(row)
         row["rank"] = ranks.get(row["name"], len(rows) + len(ranks))
     return sorted(rows, key=lambda row: str(row["name"]))
 

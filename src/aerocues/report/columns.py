@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.report.arrays import packed_floats
-from aerocues.scoring.combinations import METHODS
+from aerocues.results.combination_columns import combination_name
 from aerocues.scoring.criteria import CRITERIA, Criterion
 
 if TYPE_CHECKING:
@@ -158,9 +158,7 @@ def matrix_positions(
     rows: pl.DataFrame, combinations: Mapping[str, int], pairs: Mapping[int, int]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The combination and the pair of each row, as positions."""
-    import polars as pl
-
-    names = rows.select(pl.concat_str(METHODS, separator="-")).to_series()
+    names = rows.select(combination_name()).to_series()
     return (
         np.array([combinations[name] for name in names], dtype=np.int64),
         np.array([pairs[pair] for pair in rows["pair"]], dtype=np.int64),

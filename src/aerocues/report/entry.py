@@ -15,13 +15,14 @@ from aerocues.report.curves import curves_of, step_of
 from aerocues.report.models import model_facts
 from aerocues.report.scores import method_labels, score_facts
 from aerocues.report.validation import validation_facts
+from aerocues.results.failures import failures_of
 from aerocues.results.medians import combination_medians
 from aerocues.results.scaled_times import SCALED
 from aerocues.results.statuses import STATUSES
 from aerocues.scoring.across import Entry
 from aerocues.scoring.combinations import SUCCESS, SUCCESS_WITHOUT_CHANCE_TEST
 from aerocues.scoring.ranking import Ranking
-from aerocues.scoring.settings import preset_named
+from aerocues.scoring.settings import score_preset_named
 from aerocues.scoring.validation import Validation
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class ReportEntry:
     @property
     def chance_fails(self) -> bool:
         """Whether a pair that does not beat chance has failed."""
-        return preset_named(self.entry.preset).chance_fails
+        return score_preset_named(self.entry.preset).chance_fails
 
     @property
     def succeeded(self) -> tuple[str, ...]:
@@ -178,15 +179,8 @@ def _medians(found: ReportEntry) -> dict[str, list[float | None]]:
 
 def _outcomes(rows: pl.DataFrame) -> dict[str, Any]:
     """Rows by status, and those that are not ok by status and methods."""
-    import polars as pl
-
     counts = rows.group_by("status").len().sort("len", "status", descending=[True, False])
-    failures = (
-        rows.filter(pl.col("status") != "ok")
-        .group_by("status", "detector", "descriptor")
-        .agg(pl.len().alias("rows"), pl.col("message").drop_nulls().first())
-        .sort("rows", "status", "detector", "descriptor", descending=[True, False, False, False])
-    )
+    failures = failures_of(rows)
     return {
         "counts": dict(counts.iter_rows()),
         "failures": failures.head(MOST_FAILURES).to_dicts(),

@@ -8,7 +8,7 @@ import numpy as np
 
 from aerocues.report.entry import ReportEntry
 from aerocues.report.score_figures import COLOURS, LINE, TOP, WIDTH
-from aerocues.scoring.combinations import METHODS
+from aerocues.results.combination_columns import combination_name, name_in_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,10 +20,7 @@ MARKERS = {OK: ("o", COLOURS[0], "success"), "": ("x", COLOURS[5], "failed")}
 
 def ordered_models(found: ReportEntry) -> list[dict[str, Any]]:
     """Reconstructions by success, registered images and points, with the combination's name."""
-    rows = [
-        {**row, "name": "-".join(row[method] for method in METHODS)}
-        for row in found.models.to_dicts()
-    ]
+    rows = [{**row, "name": name_in_row(row)} for row in found.models.to_dicts()]
     return sorted(
         rows,
         key=lambda row: (
@@ -100,7 +97,7 @@ def _means(found: ReportEntry) -> tuple[str, dict[str, float]]:
     column = next(
         (name for name in FIGURE_OF_PAIRS if rows[name].is_not_null().any()), FIGURE_OF_PAIRS[-1]
     )
-    name = pl.concat_str(METHODS, separator="-").alias("name")
+    name = combination_name()
     succeeded = rows.filter(pl.col("status").is_in(found.succeeded))
     means = succeeded.group_by(name).agg(pl.col(column).mean()).drop_nulls()
     return column, dict(means.iter_rows())

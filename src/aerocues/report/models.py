@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import ScoreError
+from aerocues.results.combination_columns import COMBINATION, METHODS, combination_name
 from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
-from aerocues.scoring.combinations import COMBINATION, METHODS
 from aerocues.scoring.criteria import CRITERIA, Better
 from aerocues.scoring.outcomes import FEWEST_MODELS, OUTCOMES, Relations, relations_of
 
@@ -47,11 +47,9 @@ def model_facts(
     chance_fails : bool
         Whether a pair that does not beat chance has failed.
     """
-    import polars as pl
-
     if models.is_empty():
         return None
-    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    name = combination_name()
     named = models.with_columns(name).sort(COMBINATION)
     numbers = [
         column

@@ -16,6 +16,7 @@ from aerocues.report.drawn_matches import DrawnMatches
 from aerocues.report.entry import ReportEntry
 from aerocues.report.reopening import context_of
 from aerocues.report.thumbnails import thumbnail
+from aerocues.results.combination_columns import combination_name
 
 MOST_KEYPOINTS = 1500
 MOST_MATCHES = 500
@@ -133,7 +134,7 @@ def _picture(found: ReportEntry, process: DrawingProcess, choice: Choice) -> dic
 def _measured_row(found: ReportEntry, choice: Choice) -> Row:
     import polars as pl
 
-    name = pl.concat_str("detector", "descriptor", "norm", "matcher", separator="-")
+    name = combination_name()
     chosen = found.rows.filter(name == choice.combination, pl.col("pair") == choice.pair)
     return chosen.row(0, named=True)
 

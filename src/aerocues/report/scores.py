@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.report.columns import criterion_facts
-from aerocues.scoring.combinations import METHODS
+from aerocues.results.combination_columns import METHODS
 from aerocues.scoring.ranking import Ranking
 
 FIGURES = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.plan_table import IDENTITY_NAMES
 from aerocues.results.schema import COLUMNS
 from aerocues.results.statuses import STATUSES
@@ -30,7 +31,7 @@ VALUES = (
     "seconds_per_1k_matches",
     "seconds_per_1k_inliers",
 )
-REQUIRED = ("dataset", "detector", "descriptor", "norm", "matcher", "pair", *VALUES)
+REQUIRED = ("dataset", *METHODS, "pair", *VALUES)
 RATIOS = ("precision", "recall", "repeatability", "f1_score")
 FAILED = "it failed where it was measured"
 

@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
+from aerocues.results.combination_columns import combination_name
 from aerocues.results.foreign_rows import IMPORTED, OTHER_NAMES, completed_rows
 from aerocues.results.hashing import content_hash
 from aerocues.results.measured_results import Results
 from aerocues.results.packing import folder_content
-from aerocues.results.plan_table import IDENTITY_NAMES, METHODS
+from aerocues.results.plan_table import IDENTITY_NAMES
 from aerocues.results.reconstructions import read_reconstructions
 from aerocues.results.store import OWN, PARTS, RUN, Store
 from aerocues.results.table_files import TableFile, read_table_file
@@ -227,9 +228,8 @@ def _origin(table: TableFile) -> dict[str, Any]:
 
 
 def _facts(one: _Import, rows: pl.DataFrame) -> dict[str, Any]:
-    import polars as pl
 
-    combinations = rows.select(pl.concat_str(METHODS, separator="-")).to_series()
+    combinations = rows.select(combination_name()).to_series()
     opencv = rows["opencv_version"].drop_nulls().unique().sort()
     return {
         "dataset": {

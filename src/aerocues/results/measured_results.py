@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aerocues.results.failures import failures_of
 from aerocues.results.plan_table import TIMED_ALONE
 from aerocues.results.statuses import RETRIED
 from aerocues.results.store import Store
@@ -134,14 +135,6 @@ class Results:
 
         table = self.table()
         counts = table.group_by("status").len().sort("len", "status", descending=[True, False])
-        failures = (
-            table.filter(pl.col("status") != "ok")
-            .group_by("status", "detector", "descriptor")
-            .agg(pl.len().alias("rows"), pl.col("message").drop_nulls().first())
-            .sort(
-                "status", "rows", "detector", "descriptor", descending=[False, True, False, False]
-            )
-        )
         timings, disturbed = timing_counts(table)
         settings, planned = self.settings, self._store.planned()
         rough = table.filter(~pl.col("status").is_in(RETRIED), pl.col("timing") != "exclusive")
@@ -150,7 +143,7 @@ class Results:
             planned=len(planned),
             done=len(table),
             statuses=dict(zip(counts["status"], counts["len"], strict=True)),
-            failures=failures,
+            failures=failures_of(table),
             exclusions=list(settings.get("exclusions", [])),
             timings=timings,
             disturbed=disturbed,

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aerocues.results.combination_columns import combination_name
+
 if TYPE_CHECKING:
     import polars as pl
 
 PAIR = ("dataset", "image_1", "image_2")
-METHODS = ("detector", "descriptor", "norm", "matcher")
+
+
+def one_image_seconds(stage: str) -> pl.Expr:
+    """Median seconds of ``detect`` or ``describe`` for one image: the mean of the two of a pair."""
+    import polars as pl
+
+    both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
+    return (both / 2).median().alias(f"{stage}_seconds")
 
 
 def combination_medians(table: pl.DataFrame, top: int | None = None) -> pl.DataFrame:
@@ -38,12 +47,8 @@ def combination_medians(table: pl.DataFrame, top: int | None = None) -> pl.DataF
         value = pl.when(succeeded).then(pl.col(name)).otherwise(0)
         return value.fill_null(0).median().alias(name)
 
-    def of_one_image(stage: str) -> pl.Expr:
-        both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
-        return (both / 2).median().alias(f"{stage}_seconds")
-
     return (
-        table.group_by(pl.concat_str(METHODS, separator="-").alias("combination"))
+        table.group_by(combination_name())
         .agg(
             pl.struct(PAIR).n_unique().alias("pairs"),
             succeeded.mean().alias("success_rate"),
@@ -51,8 +56,8 @@ def combination_medians(table: pl.DataFrame, top: int | None = None) -> pl.DataF
             counted("matches"),
             counted("inliers"),
             pl.col("total_seconds").median(),
-            of_one_image("detect"),
-            of_one_image("describe"),
+            one_image_seconds("detect"),
+            one_image_seconds("describe"),
             pl.col("match_seconds", "verify_seconds").median(),
         )
         .sort(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.schema import IDENTITY
 
 if TYPE_CHECKING:
     import polars as pl
 
 PAIR = ("image_1", "image_2")
-METHODS = ("detector", "descriptor", "norm", "matcher")
 IDENTITY_NAMES = tuple(column.name for column in IDENTITY)
 TIMED_ALONE = "timed_alone"
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.schema import IDENTITY, Column
 from aerocues.results.statuses import Status
 
-RECONSTRUCTION_IDENTITY = ("dataset", "detector", "descriptor", "norm", "matcher")
+RECONSTRUCTION_IDENTITY = ("dataset", *METHODS)
 
 RECONSTRUCTION_STATUSES: tuple[Status, ...] = (
     Status("ok", "one model holds the images, and its cameras are where they were"),

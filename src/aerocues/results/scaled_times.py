@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.metrics import PER_THOUSAND, STAGES_OF_IMAGES, STAGES_OF_PAIRS
 
 if TYPE_CHECKING:
     import polars as pl
 
 SCALED = "scaled"
-_GROUP = ("machine", "detector", "descriptor", "norm", "matcher")
+_GROUP = ("machine", *METHODS)
 _STAGES = {
     **{stage: (f"{stage}_seconds_1", f"{stage}_seconds_2") for stage in STAGES_OF_IMAGES},
     **{stage: (f"{stage}_seconds",) for stage in STAGES_OF_PAIRS},

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from aerocues.errors import StoreError
 from aerocues.methods.combination import METHOD_NAME
-from aerocues.results.plan_table import METHODS
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.schema import Column, polars_schema
 
 if TYPE_CHECKING:

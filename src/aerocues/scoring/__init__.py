@@ -5,12 +5,12 @@ from __future__ import annotations
 from aerocues.scoring.criteria import CRITERIA, Criterion, criteria_named
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.ranking import Ranking, rank_alternatives
-from aerocues.scoring.settings import PRESETS, ScoreSettings
+from aerocues.scoring.settings import SCORE_PRESETS, ScoreSettings
 from aerocues.scoring.table import DecisionTable
 
 __all__ = [
     "CRITERIA",
-    "PRESETS",
+    "SCORE_PRESETS",
     "Criterion",
     "DecisionTable",
     "Ranking",

@@ -9,13 +9,12 @@ import numpy as np
 import polars as pl
 
 from aerocues.errors import ScoreError
+from aerocues.results.combination_columns import COMBINATION, METHODS, combination_name
 from aerocues.scoring.criteria import Criterion
-from aerocues.scoring.settings import ScorePreset, preset_named
+from aerocues.scoring.settings import ScorePreset, score_preset_named
 from aerocues.scoring.table import DecisionTable
 
-METHODS = ("detector", "descriptor", "norm", "matcher")
 PAIR = ("dataset", "sequence", "image_1", "image_2", "pair")
-COMBINATION = "combination"
 # By what scores are grouped: the plural, and the methods that make a label.
 COMPONENTS: dict[str, tuple[str, ...]] = {
     "detectors": ("detector",),
@@ -35,7 +34,7 @@ def has_chance_test(rows: pl.DataFrame) -> bool:
 
 def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
     """The default where inliers beyond chance were measured, else that of the thesis."""
-    return preset_named("default" if has_chance_test(rows) else "thesis")
+    return score_preset_named("default" if has_chance_test(rows) else "thesis")
 
 
 def decision_table(
@@ -100,7 +99,7 @@ def decision_table(
 
 
 def _named(rows: pl.DataFrame) -> pl.DataFrame:
-    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    name = combination_name()
     sequence = pl.col("sequence").fill_null("") if "sequence" in rows.columns else pl.lit("")
     return rows.with_columns(name, sequence.alias("sequence")).sort("pair", COMBINATION)
 
@@ -123,9 +122,7 @@ def _with_reconstructions(
     criteria: Sequence[Criterion],
 ) -> DecisionTable:
     models = DecisionTable.from_frame(
-        _without_failures(reconstructions, SUCCESS).with_columns(
-            pl.concat_str(METHODS, separator="-").alias(COMBINATION)
-        ),
+        _without_failures(reconstructions, SUCCESS).with_columns(combination_name()),
         alternative=COMBINATION,
         criteria=of_models,
     )

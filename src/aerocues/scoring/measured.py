@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 from aerocues.errors import ScoreError
+from aerocues.results.combination_columns import METHODS, combination_name
 from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.combinations import (
-    COMBINATION,
-    METHODS,
     SUCCESS,
     decision_table,
     has_chance_test,
@@ -18,7 +17,7 @@ from aerocues.scoring.combinations import (
 )
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.ranking import TOP_K, Interval, Ranking, rank_alternatives
-from aerocues.scoring.settings import ScorePreset, ScoreSettings, preset_named
+from aerocues.scoring.settings import ScorePreset, ScoreSettings, score_preset_named
 from aerocues.scoring.table import DecisionTable
 
 if TYPE_CHECKING:
@@ -118,7 +117,7 @@ def table_of(
     results : Measured
         Such as `aerocues.Results`.
     preset : str, optional
-        A row of `settings.PRESETS`; the one that suits the measurements by default.
+        A row of `settings.SCORE_PRESETS`; the one that suits the measurements by default.
     criteria : sequence of str, optional
         In place of the preset's.
     dataset : str, optional
@@ -137,7 +136,7 @@ def table_of(
     rows = rows_of_dataset(results.table(), dataset)
     if rows.is_empty():
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
-    chosen = preset_named(preset) if preset else suitable_preset(rows)
+    chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     _refuse_failure(rows, chosen)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     names = chosen.criteria if criteria is None else tuple(criteria)
@@ -178,7 +177,7 @@ def _enough_models(rows: pl.DataFrame, models: pl.DataFrame) -> bool:
 def _median_seconds(rows: pl.DataFrame) -> dict[str, float]:
     import polars as pl
 
-    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    name = combination_name()
     medians = rows.group_by(name).agg(pl.col("total_seconds").median()).drop_nulls()
     return dict(medians.iter_rows())
 

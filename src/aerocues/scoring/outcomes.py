@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
+from aerocues.results.combination_columns import COMBINATION, combination_name
 from aerocues.scoring.combinations import (
-    COMBINATION,
-    METHODS,
     SUCCESS,
     SUCCESS_WITHOUT_CHANCE_TEST,
     suitable_preset,
@@ -21,7 +20,7 @@ from aerocues.scoring.correlation import correlation_between
 from aerocues.scoring.criteria import Better, criteria_named
 from aerocues.scoring.long_form import values_of
 from aerocues.scoring.measured import Measured, rows_of_dataset
-from aerocues.scoring.settings import preset_named
+from aerocues.scoring.settings import score_preset_named
 
 if TYPE_CHECKING:
     import polars as pl
@@ -153,7 +152,7 @@ def relate_outcomes(
     results : Measured
         Such as `aerocues.Results`.
     preset : str, optional
-        A row of `settings.PRESETS`, which says whether pairs that do not beat chance have failed.
+        A row of `settings.SCORE_PRESETS`: whether pairs that do not beat chance have failed.
     dataset : str, optional
         Needed where there are several.
 
@@ -168,16 +167,14 @@ def relate_outcomes(
     rows = rows_of_dataset(results.table(), dataset)
     if rows.is_empty():
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
-    chosen = preset_named(preset) if preset else suitable_preset(rows)
+    chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     return relations_of(rows, models, chance_fails=chosen.chance_fails)
 
 
 def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool) -> Relations:
     """The same for rows and reconstructions of one dataset; see `relate_outcomes`."""
-    import polars as pl
-
-    name = pl.concat_str(METHODS, separator="-").alias(COMBINATION)
+    name = combination_name()
     features = _features(rows.with_columns(name), chance_fails=chance_fails)
     joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
     if len(joined) < FEWEST_MODELS:

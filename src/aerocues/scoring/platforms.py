@@ -8,8 +8,8 @@ import numpy as np
 import polars as pl
 
 from aerocues.errors import ScoreError
+from aerocues.results.combination_columns import METHODS
 
-METHODS = ("detector", "descriptor", "norm", "matcher")
 KEY = (*METHODS, "pair", "image_1", "image_2")
 MEASURED = ("ok", "chance")
 

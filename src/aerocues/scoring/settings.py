@@ -85,7 +85,7 @@ class ScorePreset:
     )
 
 
-PRESETS: dict[str, ScorePreset] = {
+SCORE_PRESETS: dict[str, ScorePreset] = {
     preset.name: preset
     for preset in (
         ScorePreset(
@@ -126,7 +126,7 @@ PRESETS: dict[str, ScorePreset] = {
 }
 
 
-def preset_named(name: str) -> ScorePreset:
+def score_preset_named(name: str) -> ScorePreset:
     """The preset of this name; ScoreError where there is none."""
-    _check(name, "preset of scoring", tuple(PRESETS))
-    return PRESETS[name]
+    _check(name, "preset of scoring", tuple(SCORE_PRESETS))
+    return SCORE_PRESETS[name]

@@ -9,6 +9,7 @@ import numpy as np
 
 from aerocues.evaluation.engine import Engine
 from aerocues.methods.combination import Combination
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.metrics import Row
 from aerocues.scoring.combinations import SUCCESS
 from aerocues.scoring.criteria import Criterion
@@ -23,8 +24,6 @@ from aerocues.tuning.session import Session
 
 if TYPE_CHECKING:
     import polars as pl
-
-COMPONENTS = ("detector", "descriptor", "norm", "matcher")
 
 
 class ImageEvaluator:
@@ -56,7 +55,7 @@ class ImageEvaluator:
     ) -> None:
         self.alternatives: Sequence[str] = [str(combination) for combination in combinations]
         self.components: Mapping[str, Sequence[str]] = {
-            name: [getattr(each, name) for each in combinations] for name in COMPONENTS
+            name: [getattr(each, name) for each in combinations] for name in METHODS
         }
         self.blocks = blocks_of([evaluator.context.dataset.pair(pair) for pair in pairs])
         self.criteria = criteria

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from aerocues.methods.combination import Combination
-from aerocues.results.medians import METHODS
+from aerocues.results.combination_columns import combination_name
+from aerocues.results.medians import one_image_seconds
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_evaluator import rows_frame
 from aerocues.tuning.pair_evaluator import PairEvaluator
@@ -45,18 +46,14 @@ def race_ranking(
     )
     succeeded = pl.col("status") == "ok"
 
-    def of_one_image(stage: str) -> pl.Expr:
-        both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
-        return (both / 2).median().alias(f"{stage}_seconds")
-
     return (
-        table.group_by(pl.concat_str(METHODS, separator="-").alias("combination"))
+        table.group_by(combination_name())
         .agg(
             pl.len().alias("pairs"),
             succeeded.sum().alias("succeeded"),
             *(pl.when(succeeded).then(pl.col(name)).median().alias(name) for name in MEDIANS),
-            of_one_image("detect"),
-            of_one_image("describe"),
+            one_image_seconds("detect"),
+            one_image_seconds("describe"),
             pl.col("match_seconds", "verify_seconds", "total_seconds").median(),
         )
         .filter(pl.col("succeeded") > 0)

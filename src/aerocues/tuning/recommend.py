@@ -22,7 +22,7 @@ from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import Objective, objective_named
-from aerocues.scoring.settings import ScorePreset, preset_named
+from aerocues.scoring.settings import ScorePreset, score_preset_named
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
@@ -210,7 +210,7 @@ def recommend(
             own = engine if evaluators.overlap is evaluators.race else other
             seen = look_for_overlap(evaluators.overlap, own, pairs, session, options.seed)
         follower.racing(len(chosen), len(seen.overlapping))
-        scoring = preset_named("default" if parts.chance_test else "thesis")
+        scoring = score_preset_named("default" if parts.chance_test else "thesis")
         criteria = criteria_named(objective.criteria(scoring.criteria))
         evaluator = ImageEvaluator(
             evaluators.race, engine, chosen, seen.overlapping, criteria, session, options.device

@@ -10,7 +10,7 @@ import numpy as np
 from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
-from aerocues.scoring.settings import ScoreSettings, preset_named
+from aerocues.scoring.settings import ScoreSettings, score_preset_named
 from aerocues.tuning.scales import Array
 from aerocues.tuning.valuation import Valuation
 
@@ -89,7 +89,7 @@ def search_objective(name: str) -> SearchObjective:
         If there is no such criterion, or it is one of 3D models.
     """
     if name.lower() == CUES:
-        preset = preset_named("default")
+        preset = score_preset_named("default")
         criteria = tuple(criteria_named(preset.criteria))
         return SearchObjective(criteria, OBJECTIVES["balanced"], preset.settings)
     [criterion] = criteria_named([name])
