@@ -24,7 +24,7 @@ from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.race import RaceOutcome, RaceSettings, race
-from aerocues.tuning.representative import look_for_overlap, probes
+from aerocues.tuning.representative import find_overlap, probes
 from aerocues.tuning.session import Session
 from tests.evaluation.inline import InlineEngine
 
@@ -92,7 +92,7 @@ def sit(photos: Path, folder: Path, machine: Machine, budget: float) -> RaceOutc
     asked = list(dict.fromkeys([*chosen, *probes()]))
     evaluator = PairEvaluator(context, asked, Store.create(folder), preset, clock=machine.clock)
     session = Session(Journal.read(folder, "race", budget), clock=machine.clock)
-    seen = look_for_overlap(evaluator, machine, dataset.pairs, session)
+    seen = find_overlap(evaluator, machine, dataset.pairs, session)
     scoring = score_preset_named("default")
     criteria = criteria_named(scoring.criteria)
     criteria_evaluator = ImageEvaluator(

@@ -1,4 +1,4 @@
-"""What it takes to measure a combination on a pair: from the tables, then from what was seen."""
+"""Predicted cost of measuring a combination on a pair: from tables first, then from rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from aerocues.pipeline.pair_stages import BRUTE_FORCE
 from aerocues.results.metrics import Row
 from aerocues.tuning.scales import Array
 
-# What exact search and timing on a part take of the time of brute force, and at least; measured.
+# Measured: exact search and timing of a sample take this share of the brute-force time, and at
+# least this many seconds.
 EXACT_SHARE = {"HAM": 0.05, "L2": 0.13}
 EXACT_SECONDS = 0.01
 
@@ -32,7 +33,7 @@ class _Mean:
 
 
 class Costs:
-    """Predicts CPU seconds, better the more rows it has seen.
+    """Predicts CPU seconds; each measured row improves the prediction.
 
     Parameters
     ----------
@@ -48,7 +49,7 @@ class Costs:
         self._matching: dict[str, _Mean] = defaultdict(_Mean)
 
     def learn(self, row: Row) -> None:
-        """Take what a measured row tells."""
+        """Update the prediction with a measured row."""
         detector, both = str(row["detector"]), f"{row['detector']}-{row['descriptor']}"
         name = f"{both}-{row['norm']}-{row['matcher']}"
         keypoints, detecting = row["keypoints_1"], row["detect_seconds_1_cpu"]
@@ -64,7 +65,7 @@ class Costs:
                 mean.add(known)
 
     def predicted(self) -> Array:
-        """(A,) seconds of each combination on a pair whose features are not there yet."""
+        """(A,) seconds of each combination on a pair without stored features."""
         return np.array([self._predict(each) for each in self._combinations])
 
     def _predict(self, combination: Combination) -> float:

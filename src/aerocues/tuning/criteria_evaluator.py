@@ -20,20 +20,20 @@ class CriteriaEvaluator(Protocol):
 
     alternatives: Sequence[str]
     components: Mapping[str, Sequence[str]]
-    """The methods of each alternative, by what they are: detector, descriptor, matcher."""
+    """The methods of each alternative, by kind: detector, descriptor, norm, matcher."""
     blocks: NDArray[np.int64]
-    """(P,) scene or sequence of each pair."""
+    """(P,) number of each pair's scene or sequence."""
     criteria: Sequence[Criterion]
     predicted_seconds: Array
-    """(A,) roughly what an alternative costs on a pair."""
+    """(A,) rough cost of each alternative on a pair."""
 
     @property
     def spent(self) -> float:
-        """Seconds that all measurements so far took, with those that were to be kept."""
+        """Seconds spent so far, including those reserved for the end."""
         ...
 
     def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> Mapping[Cell, Array]:
-        """Values (C,) of alternatives on pairs, NaN where one failed; none if time was up.
+        """(C,) values of each cell, NaN if it failed; cells for which time was up are missing.
 
-        `keep` are wall seconds that the end of the race will take.
+        `keep` wall seconds are reserved for the end of the race.
         """

@@ -1,4 +1,4 @@
-"""Times on another machine, from those measured here and factors between the two."""
+"""Times on another machine: times measured here, scaled by a factor for each stage and method."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ class Device:
     ----------
     name : str
     factors : mapping of stage to mapping of method to float
-        Seconds there / seconds here: of detect by detector, of describe by descriptor, of match
-        by norm and matcher (``L2-BF``); ``*`` stands for all that are not named.
+        Seconds there / seconds here: for detect by detector, for describe by descriptor, for match
+        by norm and matcher (``L2-BF``); ``*`` stands for all others.
     """
 
     name: str
     factors: Mapping[str, Mapping[str, float]]
 
     def there(self, row: Row) -> Row:
-        """The row with its times as on the device."""
+        """The row with the times of the device."""
         method = {
             "detect": row["detector"],
             "describe": row["descriptor"],
@@ -59,14 +59,14 @@ def read_device(path: Path) -> Device:
     Raises
     ------
     SelectionError
-        If the file cannot be read or does not hold factors.
+        If the file cannot be read or has no factors.
     """
     content = read_json(path, "the factors", SelectionError, _NEXT_STEP)
     stages = content.get("stages") if isinstance(content, dict) else None
     if not isinstance(stages, dict) or not all(_are_factors(stages.get(name)) for name in STAGES):
         raise SelectionError(
-            f"{path} holds no factors: it needs 'stages' with {', '.join(STAGES)}, each with "
-            f"positive numbers, one of them for '{ANY}'; {_NEXT_STEP}"
+            f"{path} is not a file of factors: it needs 'stages' with {', '.join(STAGES)}, each "
+            f"with positive numbers, one of them for '{ANY}'; {_NEXT_STEP}"
         )
     return Device(str(content.get("machine", path.stem)), stages)
 

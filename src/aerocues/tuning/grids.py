@@ -1,8 +1,7 @@
-"""What is tried for each method: one row a detector or descriptor.
+"""The parameter grid of each method: one row per detector or descriptor.
 
-The values of a parameter are tried in every combination with those of the others; the default is
-always among them. Values come from the papers, from OpenCV's documentation and from what the
-default of another method of the same kind is.
+Every combination of the values of all parameters is tried, and the default. Values come from the
+papers, from OpenCV's documentation and from the defaults of similar methods.
 """
 
 from __future__ import annotations
@@ -20,14 +19,14 @@ from aerocues.methods.parameters import Value
 Kind = Literal["detector", "descriptor"]
 Setting = Mapping[str, Value]
 SCALES = (0.75, 1.0, 2.5, 5.0, 6.25, 8.0)
-"""Of the patch of a descriptor over the size of a keypoint, which each detector means otherwise."""
+"""Patch of a descriptor over the keypoint size, which each detector defines differently."""
 THRESHOLDS = (1.0, 1.5, 2.0, 3.0, 4.0)
-"""Inlier thresholds in pixels, where the truth can judge them."""
+"""Inlier thresholds in pixels; tried where ground truth can validate them."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """What is tried for one method.
+    """The grid of one method.
 
     Parameters
     ----------
@@ -35,9 +34,9 @@ class Grid:
     method : str
     values : mapping of parameter to values
     partner : str
-        For a detector the descriptor, for a descriptor the detector that it is judged with.
+        The descriptor (for a detector) or detector (for a descriptor) that it is evaluated with.
     on_each_detector : mapping of parameter to values
-        For a descriptor, what is tried for each detector by itself.
+        For a descriptor: a grid that is searched separately for each detector.
     """
 
     kind: Kind
@@ -48,9 +47,9 @@ class Grid:
 
 
 def settings_of(values: Mapping[str, tuple[Value, ...]], default: Setting) -> list[Setting]:
-    """All settings of a grid that differ from the default, which comes first and changes nothing.
+    """All settings of a grid: the default (empty) first, then those that differ from it.
 
-    A setting holds what differs from the default only.
+    A setting contains only the values that differ from the default.
     """
     found: list[Setting] = [{}]
     for chosen in product(*values.values()):
@@ -179,7 +178,7 @@ def read_grid(path: Path) -> dict[str, tuple[Value, ...]]:
     Raises
     ------
     SelectionError
-        If it cannot be read or holds something else.
+        If it cannot be read or has other content.
     """
     example = 'give a JSON file such as {"threshold": [5, 10, 20]}'
     content = read_json(path, "the grid", SelectionError, example)
@@ -194,7 +193,7 @@ def read_grid(path: Path) -> dict[str, tuple[Value, ...]]:
         )
     ):
         raise SelectionError(
-            f"{path} is no grid: it must hold parameters with lists of values, such as "
+            f"{path} is not a grid: it must have parameters with lists of values, such as "
             '{"threshold": [5, 10, 20]}'
         )
     return {str(name): tuple(values) for name, values in content.items()}

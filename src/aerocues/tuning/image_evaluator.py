@@ -38,9 +38,9 @@ class ImageEvaluator:
         Numbers of the pairs.
     criteria : sequence of Criterion
     session : Session
-        Whose time it takes.
+        Keeps the budget.
     device : Device, optional
-        Whose times count, in place of this machine's.
+        Use the times of this device in place of this machine's.
     """
 
     def __init__(
@@ -67,16 +67,16 @@ class ImageEvaluator:
 
     @property
     def spent(self) -> float:
-        """Wall seconds of the session, with those that are kept for the end."""
+        """Wall seconds of the session, including those reserved for the end."""
         return self._session.spent
 
     def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> dict[Cell, Array]:
-        """Values of what could be measured in time; see `CriteriaEvaluator`.
+        """Values of the cells that were measured in time; see `CriteriaEvaluator`.
 
         Raises
         ------
         SelectionError
-            If time is up before anything is measured.
+            If the time was up before anything was measured.
         """
         measurements = [(self._pairs[p], self._combinations[a]) for a, p in cells]
         asked = [each for each in measurements if self._evaluator.possible(each)]
@@ -106,7 +106,7 @@ class ImageEvaluator:
 
 
 def criterion_values(rows: Sequence[Row], criteria: Sequence[Criterion]) -> Array:
-    """(N, C) values of the criteria in measured rows; NaN in all of a row that failed."""
+    """(N, C) values of the criteria in measured rows; all NaN for a row that failed."""
     frame = rows_frame(rows)
     columns = [
         values_of(frame, criterion).cast(float).fill_null(float("nan")).to_numpy()

@@ -1,4 +1,4 @@
-"""What a race has done so far, so that an interrupted one goes on as if nothing had been."""
+"""The steps of a race on disk, so that an interrupted race continues with the same decisions."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from aerocues.results.whole_files import json_content, write_whole
 
 @dataclass(frozen=True)
 class Step:
-    """What was asked for at once, and what came of it.
+    """Measurements requested together, and their result.
 
     Parameters
     ----------
     asked : str
-        Hash of the row keys that were asked for.
+        Hash of the requested row keys.
     spent : float
-        Seconds since the race began, when the step was over.
+        Seconds from the start of the race to the end of the step.
     kept : float
-        Seconds that were set aside for what follows the last step.
+        Seconds reserved for the time after the last step.
     missing : sequence of str
-        Row keys that were not obtained in time.
+        Keys of rows that were not finished in time.
     """
 
     asked: str
@@ -39,19 +39,19 @@ class Step:
 class Journal:
     """The steps of one race, in the results folder.
 
-    Their times and what was not obtained are recorded, as decisions depend on both; the
-    measurements themselves are in the folder.
+    Times and unfinished rows are recorded because decisions depend on them; the measurements
+    themselves are in the folder.
 
     Parameters
     ----------
     path : Path
     key : str
-        Hash of all that the decisions depend on besides the measurements and the budget.
+        Hash of everything that decisions depend on except the measurements and the budget.
     budget : float
         Seconds that the race has now.
     steps : list of Step
     begun : float
-        Seconds spent, those on steps that were interrupted or given up among them.
+        Seconds spent, including interrupted and discarded steps.
     """
 
     path: Path
@@ -63,10 +63,10 @@ class Journal:
 
     @classmethod
     def read(cls, folder: Path, key: str, budget: float) -> Journal:
-        """The journal of the race with this key; an empty one where there is none.
+        """The journal of the race with this key; an empty one if there is none.
 
-        What lack of time left undone under a smaller budget is to be done now, so that the steps
-        from there on are not taken over.
+        With a larger budget than before, steps are kept only up to the first that lacked time: what
+        it left out can be measured now.
         """
         path = folder / RACE
         try:
@@ -77,19 +77,19 @@ class Journal:
                 complete = [not step.missing for step in journal.steps]
                 journal._cut(complete.index(False) if False in complete else len(complete))
         except (KeyError, TypeError, ValueError):
-            # There is none, or it is damaged: the measurements are there all the same.
+            # No journal, or a damaged one: the measurements are kept independently of it.
             return cls(path, key, budget)
         return journal
 
     @property
     def spent(self) -> float:
-        """Seconds of everything that is recorded."""
+        """Seconds of all recorded work."""
         return max(self.steps[-1].spent if self.steps else 0.0, self.begun)
 
     def replay(self, keys: Sequence[str], there: Collection[str]) -> Step | None:
-        """The next recorded step, if the same rows were asked for and are there.
+        """The next recorded step, if it requested the same rows and they are stored.
 
-        If not, the race has taken another way, and what is recorded from here on is void.
+        Otherwise the race differs from the recorded one, and the remaining steps are discarded.
         """
         if self._replayed == len(self.steps):
             return None
@@ -109,7 +109,7 @@ class Journal:
         return step
 
     def interrupt(self, spent: float) -> None:
-        """Record the time of a step that is not finished."""
+        """Record the time of an unfinished step."""
         self.begun = spent
         self._write()
 
@@ -127,7 +127,7 @@ class Journal:
 
 
 def _races(path: Path) -> dict[str, Any]:
-    """Everything that the file holds, by key; nothing where it cannot be read."""
+    """The journals in the file by key; empty if it cannot be read."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""How alternatives and pairs are laid out for a race: methods, blocks and an order of pairs."""
+"""The design of a race: method indicators, blocks of pairs and the order of pairs."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ KIND = ("detector", "descriptor")
 
 
 def features(components: Mapping[str, Sequence[str]]) -> tuple[Array, NDArray[np.int64]]:
-    """(A, K): 1 for each method that an alternative is made of; and (K,) the group of each column.
+    """(A, K) indicators, 1 for each method of an alternative, and (K,) the group of each column.
 
-    Detector and descriptor together are a method, too: what they make of each other.
+    Each detector-descriptor pair has a column of its own: their interaction.
     """
     labelled = list(components.values())
     if set(KIND) <= set(components):

@@ -21,11 +21,11 @@ from aerocues.results.metrics import Row
 from aerocues.results.store import Store
 
 Measurement = tuple[int, Combination]
-"""The number of a pair, and what is measured on it."""
+"""The number of a pair, and the combination to measure on it."""
 
 
 class _TimeIsUpError(Exception):
-    """Ends what the workers are at."""
+    """Stops the workers at the deadline."""
 
 
 class PairEvaluator:
@@ -35,15 +35,15 @@ class PairEvaluator:
     ----------
     context : Context
     combinations : sequence of Combination
-        All that may be asked for.
+        All that may be measured.
     store : Store
         Open for writing.
     preset : Preset
         Recorded with the results.
     hashing : callable
-        Told how many of all images have been read.
+        Called with the number of images read and of all images.
     clock : callable
-        Gives the seconds that deadlines are compared with.
+        Returns seconds; deadlines are in its time.
     """
 
     def __init__(
@@ -71,11 +71,11 @@ class PairEvaluator:
         store.write_run(run_facts(context, preset, self.plan, combinations))
 
     def possible(self, measurement: Measurement) -> bool:
-        """Whether the images allow it."""
+        """Whether the images allow this measurement."""
         return measurement in self._planned
 
     def row(self, measurement: Measurement) -> Row | None:
-        """What was measured; None where nothing was."""
+        """The measured row; None if it was not measured."""
         planned = self._planned.get(measurement)
         return None if planned is None else self._rows.get(planned.row_key)
 
@@ -90,21 +90,21 @@ class PairEvaluator:
         deadline: float = float("inf"),
         watch: Callable[[Sequence[Activity]], None] = lambda _: None,
     ) -> None:
-        """Measure what is not there yet; at the deadline what is unfinished is given up.
+        """Measure what is missing; what is unfinished at the deadline is dropped.
 
         Parameters
         ----------
         measurements : iterable of Measurement
         engine : Engine
         deadline : float
-            By the clock of the evaluator.
+            In seconds of the evaluator's clock.
         watch : callable
-            Told what the workers are doing.
+            Called with the activities of the workers.
 
         Raises
         ------
         AerocuesError
-            If workers cannot be started or results not be written.
+            If workers cannot be started or results cannot be written.
         """
         rows = [self._planned[each] for each in measurements]
         missing = [row for row in rows if row.row_key not in self._rows]
@@ -113,24 +113,24 @@ class PairEvaluator:
         if not missing or self._clock() >= deadline:
             return
 
-        def look(activities: Sequence[Activity]) -> None:
+        def stop_in_time(activities: Sequence[Activity]) -> None:
             if self._clock() >= deadline:
                 raise _TimeIsUpError
             watch(activities)
 
         with contextlib.suppress(_TimeIsUpError):
-            self._run(self._units(missing), engine, look)
+            self._run(self._units(missing), engine, stop_in_time)
 
     def _run(
-        self, units: Sequence[Unit], engine: Engine, look: Callable[[Sequence[Activity]], None]
+        self, units: Sequence[Unit], engine: Engine, watch: Callable[[Sequence[Activity]], None]
     ) -> None:
-        with contextlib.closing(engine.run(units, self.context, look)) as finished_units:
+        with contextlib.closing(engine.run(units, self.context, watch)) as finished_units:
             for finished in finished_units:
                 self._store.write_finished(finished.unit.detector, finished.rows)
                 self._rows.update((str(row["row_key"]), row) for row in finished.rows)
 
     def _units(self, rows: Sequence[PlannedRow]) -> list[Unit]:
-        """One unit a detector and pair, the costliest first."""
+        """One unit per detector and pair, the costliest first."""
         units = []
         order = sorted(rows, key=lambda row: (row.combination.detector, row.pair))
         for (detector, pair), group in groupby(

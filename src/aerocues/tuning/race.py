@@ -1,9 +1,9 @@
-"""A race for the highest CUES: a cheap look, then more pairs for those that can still win.
+"""A race for the highest CUES: cheap first measurements, then more pairs for likely winners.
 
-The cheapest combinations are measured on a pair of each block. From what is measured a model
-tells what to expect of the rest, and how sure that is; tables drawn from it are scored, and the
-combinations that come out on top are measured next, the cheaper and less measured ones first
-(Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm identification", 2020).
+First the cheapest combinations are measured on a pair of each block. A model then predicts the
+values that were not measured, with their uncertainty. Tables are drawn from it and scored, and the
+combinations that win some of these tables are measured next, the cheaper and less measured ones
+first (Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm identification", 2020).
 """
 
 from __future__ import annotations
@@ -26,14 +26,21 @@ from aerocues.tuning.surrogate import Surrogate, fit
 from aerocues.tuning.valuation import Valuation, chances, interest_of
 
 Ended = Literal["budget", "sure", "measured"]
+# Users see the best five: what is likely to be among them is worth measuring, too. More would
+# spend time on combinations that nobody reads about.
 FEW = 5
+# Blocks in the first measurements: more cover more scenes, but take longer before the race starts.
 _MOST_BLOCKS = 8
+# Pairs that a possible winner needs before the race may end early: measured values count as
+# certain, so that a single lucky pair looks like a sure win. More pairs make the end safer and
+# later.
 _FEWEST_PAIRS = 2
-# Fewer say too little of a winner to end the race early.
 _PAIRS_OF_WINNER = 5
-# What drawing a table takes a value or feature on a busy machine, until it is seen here; and what
-# else follows the last measurement.
+# Seconds to draw a table, per value and feature: a guess for a busy machine that the first round
+# replaces by its own time. Too high a guess ends a short race early, too low a one exceeds the
+# budget.
 _DRAW_SECONDS = 1.6e-7
+# Seconds for everything else after the last measurement, such as the tables of the answer.
 _END_SECONDS = 1.0
 
 
@@ -48,24 +55,29 @@ class RaceSettings:
     seed : int
     sure : float
         Probability of the leader at which the race ends, once the leader was measured on 5 pairs
-        and everything else that may win on 2.
-    look : float
-        Share of the budget for a look at each detector and descriptor together.
+        and every other possible winner on 2.
+    first_share : float
+        Share of the budget for the first measurement of each detector-descriptor pair. Interactions
+        of two methods cannot be predicted from other combinations; a larger share finds more of
+        them, and leaves less time to compare the best.
     cheapest : float
-        Share of the alternatives, the cheapest, that are looked at in each block.
+        Share of the alternatives, the cheapest, that are measured in each block before the race:
+        a larger share gives the model more data, and delays the race.
     draws, last_draws : int
-        Tables drawn in a round, and to tell the chances at the end.
+        Tables drawn in each round, and for the probabilities at the end. Their error falls with the
+        square root of the number: 24 tell roughly who can win, 400 give probabilities to about 2.5
+        percentage points.
     batch : int
-        Measurements of a round.
+        Measurements of a round: more keep more workers busy, fewer follow the model more closely.
     score : ScoreSettings
     objective : Objective
-        What the best is to be best for.
+        Decides which score the best combination maximises.
     """
 
     budget: float
     seed: int = 0
     sure: float = 1.0
-    look: float = 0.4
+    first_share: float = 0.4
     cheapest: float = 0.1
     draws: int = 24
     last_draws: int = 400
@@ -76,7 +88,7 @@ class RaceSettings:
 
 @dataclass(frozen=True)
 class Round:
-    """How a race stood after a round.
+    """The state of a race after a round.
 
     Parameters
     ----------
@@ -85,10 +97,11 @@ class Round:
     measured : int
         Cells.
     contenders : int
-        Alternatives that may still be the best or among the few best: in one drawn table at least.
+        Alternatives that are among the `FEW` best in at least one drawn table.
     leader : str
-        Whose expected score is the highest, and in what share of the drawn tables it is the best.
+        Alternative with the highest expected score.
     probability : float
+        Share of the drawn tables in which the leader is the best.
     """
 
     spent: float
@@ -100,20 +113,20 @@ class Round:
 
 @dataclass(frozen=True, eq=False)
 class RaceOutcome:
-    """How a race ended.
+    """The result of a race.
 
     Parameters
     ----------
     scores : (A,) float64
-        CUES that are expected of a full measurement.
+        Expected CUES of a full measurement.
     probability : (A,) float64
-        Share of the last draws in which an alternative was the best: on these pairs, for what is
-        measured counts as it is.
+        Share of the last drawn tables in which an alternative is the best. It holds for these
+        pairs: measured values count as certain.
     known : (A, P) bool
-        What was measured.
+        Which cells were measured.
     ended : {"budget", "sure", "measured"}
-        Why: the budget was spent, the leader was sure enough, or all that may win was measured on
-        all pairs.
+        Why the race ended: the budget was spent, the leader was sure enough, or all possible
+        winners were measured on all pairs.
     rounds : list of Round
     """
 
@@ -125,35 +138,35 @@ class RaceOutcome:
 
     @property
     def order(self) -> NDArray[np.intp]:
-        """Positions of the alternatives, the best first."""
+        """Indices of the alternatives, the best first."""
         return np.argsort(-self.scores, kind="stable")
 
 
 def race(
     evaluator: CriteriaEvaluator,
     settings: RaceSettings,
-    told: Callable[[Round], None] | None = None,
+    on_round: Callable[[Round], None] = lambda _: None,
     clock: Callable[[], float] = time.monotonic,
 ) -> RaceOutcome:
-    """Run a race; the same evaluator and seed give the same answer.
+    """Run a race; the same evaluator and seed give the same result.
 
     Parameters
     ----------
     evaluator : CriteriaEvaluator
     settings : RaceSettings
-    told : callable, optional
-        Told of each round.
+    on_round : callable
+        Called with each finished round.
     clock : callable
-        Gives seconds, to tell what the end will take.
+        Returns seconds, to measure how long drawing takes.
 
     Raises
     ------
     ScoreError
-        If there is nothing to choose from, or nothing that was looked at succeeded.
+        If there are fewer than two alternatives or no pair, or all first measurements failed.
     """
     if len(evaluator.alternatives) < 2 or not len(evaluator.blocks):
-        raise ScoreError("a race needs two alternatives and a pair; give more")
-    return _Race(evaluator, settings, told or (lambda _: None), clock).run()
+        raise ScoreError("a race needs at least two alternatives and one pair")
+    return _Race(evaluator, settings, on_round, clock).run()
 
 
 class _Race:
@@ -161,10 +174,11 @@ class _Race:
         self,
         evaluator: CriteriaEvaluator,
         settings: RaceSettings,
-        told: Callable[[Round], None],
+        on_round: Callable[[Round], None],
         clock: Callable[[], float],
     ) -> None:
-        self._evaluator, self._settings, self._told, self._clock = evaluator, settings, told, clock
+        self._evaluator, self._settings = evaluator, settings
+        self._on_round, self._clock = on_round, clock
         self._rng = np.random.default_rng(settings.seed)
         shape = (len(evaluator.alternatives), len(evaluator.blocks))
         self._known = np.zeros(shape, np.bool_)
@@ -176,31 +190,31 @@ class _Race:
         self._draw_seconds = _DRAW_SECONDS * (self._values.size + self._features.size)
 
     def run(self) -> RaceOutcome:
-        self._measure(self._look_at_kinds(), self._settings.look * self._settings.budget)
-        self._measure(self._look_at_blocks())
+        self._measure(self._one_per_kind(), self._settings.first_share * self._settings.budget)
+        self._measure(self._cheapest_per_block())
         while True:
             surrogate, scales = self._fit()
             scores, drawn = self._score(surrogate, scales, self._settings.draws)
             interest = interest_of(drawn, FEW)
             leader = int(np.argmax(scores))
             chance = float(chances(drawn)[leader])
-            self._tell(leader, chance, int((interest > 0).sum()))
+            self._report(leader, chance, int((interest > 0).sum()))
             cells = self._next(interest)
             ended = self._ended(leader, chance, interest, more=bool(cells))
             if ended is not None:
                 drawn = self._score(surrogate, scales, self._settings.last_draws)[1]
                 probability = chances(drawn)
-                doubtful = self._hardly_seen(leader, probability)
+                doubtful = self._hardly_measured(leader, probability)
                 sure = probability[leader] >= self._settings.sure and not doubtful.any()
                 if ended != "sure" or sure:
                     return RaceOutcome(scores, probability, self._known, ended, self._rounds)
                 cells = self._next(np.where(doubtful, probability, 0.0)) or cells
             self._measure(cells)
 
-    def _tell(self, leader: int, chance: float, contenders: int) -> None:
+    def _report(self, leader: int, chance: float, contenders: int) -> None:
         name, spent = self._evaluator.alternatives[leader], self._evaluator.spent
         self._rounds.append(Round(spent, int(self._known.sum()), contenders, name, chance))
-        self._told(self._rounds[-1])
+        self._on_round(self._rounds[-1])
 
     def _ended(self, leader: int, chance: float, interest: Array, *, more: bool) -> Ended | None:
         if self._evaluator.spent >= self._settings.budget:
@@ -208,22 +222,19 @@ class _Race:
         if not more:
             return "measured"
         sure = chance >= self._settings.sure < 1.0
-        return "sure" if sure and not self._hardly_seen(leader, interest).any() else None
+        return "sure" if sure and not self._hardly_measured(leader, interest).any() else None
 
-    def _hardly_seen(self, leader: int, interest: Array) -> Mask:
-        """(A,) whether the leader or what may win was measured on too few pairs to end early.
-
-        What is measured counts as certain, so that a single lucky pair may look like a sure win.
-        """
+    def _hardly_measured(self, leader: int, interest: Array) -> Mask:
+        """(A,) whether a possible winner was measured on too few pairs to end the race early."""
         counts, pairs = self._known.sum(axis=1), self._known.shape[1]
         enough = np.full(len(counts), min(_FEWEST_PAIRS, pairs))
         enough[leader] = min(_PAIRS_OF_WINNER, pairs)
         return np.asarray((counts < enough) & (interest > 0))
 
-    def _look_at_kinds(self) -> list[Cell]:
-        """The cheapest alternative of each detector and descriptor on one pair, cheap ones first.
+    def _one_per_kind(self) -> list[Cell]:
+        """The cheapest alternative of each detector-descriptor pair on one pair, cheap ones first.
 
-        What two methods make of each other cannot be told from what they do with others.
+        How well two methods work together cannot be predicted from other combinations.
         """
         order = np.argsort(self._evaluator.predicted_seconds, kind="stable")
         components = self._evaluator.components
@@ -233,7 +244,7 @@ class _Race:
             of_each.setdefault(labels[each] if labels else each, int(each))
         return [(alternative, int(self._order[0])) for alternative in of_each.values()]
 
-    def _look_at_blocks(self) -> list[Cell]:
+    def _cheapest_per_block(self) -> list[Cell]:
         """The cheapest alternatives on a pair of each block."""
         count = max(round(self._settings.cheapest * len(self._known)), 2)
         cheapest = np.argsort(self._evaluator.predicted_seconds, kind="stable")[:count]
@@ -253,17 +264,17 @@ class _Race:
                 self._known[alternative, pair] = True
 
     def _keep(self) -> float:
-        """Seconds that the end takes: the tables of the last round and of the last draws."""
+        """Seconds to reserve for the end: the tables of the last round and of the last draws."""
         draws = self._settings.draws + self._settings.last_draws
         return draws * self._draw_seconds + _END_SECONDS
 
     def _fit(self) -> tuple[Surrogate, Scales]:
         measured = self._values[self._known]
         if not len(measured):
-            raise ScoreError("the budget was over before anything was measured; give more")
+            raise ScoreError("the budget was spent before anything was measured; give more time")
         if np.isnan(measured).all(axis=0).any():
             raise ScoreError(
-                "every combination failed on the first pairs; look whether the images overlap"
+                "every combination failed on the first pairs; check that the images overlap"
             )
         scales = Scales.of(measured, self._is_cost)
         stretched = scales.stretch(self._values)
@@ -271,7 +282,7 @@ class _Race:
         return fit(stretched, self._known, self._features, self._groups, blocks), scales
 
     def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
-        """Scores (A,) expected, and (draws, A) of drawn tables."""
+        """(A,) expected scores, and (draws, A) scores of drawn tables."""
         settings, evaluator = self._settings, self._evaluator
         began = self._clock()
         whole = scales.shrink(surrogate.expected)
@@ -286,7 +297,7 @@ class _Race:
         return value.of(whole), np.array(drawn)
 
     def _next(self, interest: Array) -> list[Cell]:
-        """The next pair of those that may win, the cheaper and less measured ones first."""
+        """The next pair of each possible winner, the cheaper and less measured ones first."""
         counts = self._known.sum(axis=1)
         seconds = np.maximum(self._evaluator.predicted_seconds, 1e-9)
         worth = interest / np.sqrt((counts + 1.0) * seconds)

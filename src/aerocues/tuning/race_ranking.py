@@ -28,7 +28,7 @@ def race_ranking(
     outcome: RaceOutcome,
     device: Device | None,
 ) -> pl.DataFrame:
-    """One row a combination that was measured with success; see `recommend.Recommendation`."""
+    """One row per combination that succeeded on a pair; see `recommend.Recommendation`."""
     import polars as pl
 
     rows = [

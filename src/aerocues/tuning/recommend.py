@@ -33,7 +33,7 @@ from aerocues.tuning.representative import (
     FEWEST_PAIRS,
     MOST_PAIRS,
     Seen,
-    look_for_overlap,
+    find_overlap,
     probes,
     spread_pairs,
 )
@@ -208,7 +208,7 @@ def recommend(
         follower.looking(len(pairs))
         with engine_here.standing(evaluators.overlap.context) as other:
             own = engine if evaluators.overlap is evaluators.race else other
-            seen = look_for_overlap(evaluators.overlap, own, pairs, session, options.seed)
+            seen = find_overlap(evaluators.overlap, own, pairs, session, options.seed)
         follower.racing(len(chosen), len(seen.overlapping))
         scoring = score_preset_named("default" if parts.chance_test else "thesis")
         criteria = criteria_named(objective.criteria(scoring.criteria))

@@ -1,4 +1,4 @@
-"""Which pairs stand for all of a data set: spread over it, and seen to show the same things."""
+"""Representative pairs of a dataset: evenly spread, and with overlapping images."""
 
 from __future__ import annotations
 
@@ -15,22 +15,25 @@ from aerocues.tuning.layout import blocks_of, spread_order
 from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.session import Session
 
+# More pairs represent the dataset better, and leave time to measure fewer combinations on each.
 MOST_PAIRS = 24
-# Fewer pairs tell next to nothing of the others.
+# One pair says too little about the others.
 FEWEST_PAIRS = 2
-# Strong ones of different kinds, quick to run; a pair on which all fail is taken to share nothing.
+# Strong combinations of different kinds that run fast; a pair on which all fail has no overlap.
 PROBES = ("SIFT-SIFT-L2-FLANN", "GFTT_H-BRIEF-HAM-BF", "AKAZE-AKAZE-HAM-BF")
-# Looked at together: where time is short, the first ones have to do.
+# Pairs are tested in groups: the first 2, the next 6, then the rest. If time is short, the race
+# uses the tested groups; larger groups keep more workers busy.
 FIRST, SECOND = 2, 8
-# Shares of the budget: of looking at pairs, and of looking for any at all.
-LOOKING, SEARCHING = 0.25, 0.6
+# Shares of the budget for testing overlap, and for finding two overlapping pairs at all. Larger
+# shares test more pairs, and leave less time for the race.
+TESTING, SEARCHING = 0.25, 0.6
 
 
 @dataclass(frozen=True)
 class Seen:
-    """Numbers of the pairs whose images show the same things, and of those where none was seen.
+    """Numbers of the pairs whose images overlap, and of the others.
 
-    `unseen` are those that there was no time to look at.
+    `unseen` are the pairs for which there was no time.
     """
 
     overlapping: tuple[int, ...]
@@ -39,10 +42,10 @@ class Seen:
 
 
 def spread_pairs(pairs: Sequence[Pair], most: int = MOST_PAIRS, seed: int = 0) -> list[Pair]:
-    """At most so many pairs, evenly spread over each sequence, each sequence by its share.
+    """At most `most` pairs, evenly spread; each sequence contributes in proportion to its size.
 
-    Every sequence keeps one pair at least; where there are more sequences than that, a random one
-    of each run of neighbours stands for them.
+    Every sequence keeps at least one pair. If there are more than `most` sequences, one of each
+    group of neighbours is drawn at random.
     """
     if len(pairs) <= most:
         return list(pairs)
@@ -75,22 +78,22 @@ def _evenly(own: Sequence[Pair], count: int) -> list[Pair]:
 
 
 def probes() -> list[Combination]:
-    """The combinations that tell whether two images show the same things."""
+    """The combinations that test whether two images overlap."""
     return [Combination.parse(name) for name in PROBES]
 
 
-def look_for_overlap(
+def find_overlap(
     evaluator: PairEvaluator, engine: Engine, pairs: Sequence[Pair], session: Session, seed: int = 0
 ) -> Seen:
-    """Tell which pairs show the same things: some probe finds a model that is no chance.
+    """Find the pairs that overlap: those on which a probe finds a model that beats chance.
 
-    Where a quarter of the budget does not suffice for all, some pairs that are spread over all of
-    them are looked at; where it does not for two that overlap, it may take longer.
+    If a quarter of the budget is not enough for all pairs, an evenly spread part of them is tested.
+    The test may take longer only until two overlapping pairs are found.
 
     Parameters
     ----------
     evaluator : PairEvaluator
-        Whose protocol tests against chance.
+        Its protocol must have the test against chance.
     engine : Engine
     pairs : sequence of Pair
     session : Session
@@ -99,33 +102,33 @@ def look_for_overlap(
     Raises
     ------
     DatasetError
-        If no pair does: its message says whether images are blank or do not overlap.
+        If no pair overlaps; the message says whether images are blank or do not overlap.
     SelectionError
-        If time is up before one is found.
+        If the time was up before one was found.
     """
     order = spread_order(blocks_of(pairs), np.random.default_rng(seed))
     spread = [pairs[place].index for place in order]
-    look = _Look(evaluator, engine, session)
+    test = _OverlapTest(evaluator, engine, session)
     for start, end in ((0, FIRST), (FIRST, SECOND), (SECOND, len(spread))):
-        look.at(spread[start:end])
+        test.run(spread[start:end])
     seen = Seen(
         *(
             tuple(pair.index for pair in pairs if pair.index in found)
-            for found in (look.overlapping, look.others, look.unseen)
+            for found in (test.overlapping, test.others, test.unseen)
         )
     )
     if seen.overlapping:
         return seen
     if seen.unseen:
         raise session.too_small(
-            f"no two images that show the same things were found in time, and "
-            f"{len(seen.others)} of {len(pairs)} pairs were looked at"
+            "no overlapping images were found in time, and "
+            f"{len(seen.others)} of {len(pairs)} pairs were tested"
         )
     raise DatasetError(_why_none(evaluator, seen.others))
 
 
 @dataclass
-class _Look:
+class _OverlapTest:
     evaluator: PairEvaluator
     engine: Engine
     session: Session
@@ -133,8 +136,8 @@ class _Look:
     others: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
 
-    def at(self, pairs: Sequence[int]) -> None:
-        """Look at pairs, one probe after the other on those where none has found anything yet."""
+    def run(self, pairs: Sequence[int]) -> None:
+        """Test pairs with one probe after the other, each on the pairs still without a model."""
         left = list(pairs)
         for probe in probes():
             left = self._without_model(left, probe)
@@ -158,7 +161,7 @@ class _Look:
         return row is not None and row["status"] == "ok"
 
     def _share(self) -> float:
-        return LOOKING if len(self.overlapping) >= FEWEST_PAIRS else SEARCHING
+        return TESTING if len(self.overlapping) >= FEWEST_PAIRS else SEARCHING
 
 
 def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
@@ -173,7 +176,7 @@ def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
     if statuses and all(status == "error" for status in statuses):
         return f"no pair could be measured: {messages[0] if messages else 'unknown error'}"
     return (
-        f"no two images of the {len(pairs)} pairs that were tried show the same things: none of "
+        f"the images of the {len(pairs)} tested pairs do not overlap: none of "
         f"{', '.join(PROBES)} finds a model better than chance; check that the pairs overlap, or "
         "choose others with --pairs exhaustive or gps"
     )

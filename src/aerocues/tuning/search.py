@@ -18,18 +18,19 @@ from aerocues.tuning.search_objective import SearchObjective, mean_gain, thresho
 from aerocues.tuning.search_spaces import SearchSpace
 from aerocues.tuning.splits import Split
 
-# Larger grids are halved: all candidates on a part of the pairs, the better ones on the rest.
+# Successive halving for grids larger than this: all candidates on a third of the pairs, the better
+# third of them on the rest. Smaller shares save time, and discard the best candidate more often.
 LARGE_GRID = 9
 FIRST_PART = 0.34
 KEPT = 0.34
 FEWEST_PAIRS, FEWEST_KEPT = 3, 4
 FEWEST_TO_JUDGE = 3
-"""Pairs: two that gain by chance look like proof to any test."""
+"""Validation pairs: with two, any test takes chance gains as proof too often."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """What a candidate reaches on pairs: means, in which a failed pair counts as 0."""
+    """Mean figures of a candidate over pairs; a failed pair counts as 0."""
 
     success: float
     inlier_ratio: float
@@ -40,7 +41,7 @@ class Figures:
 
 @dataclass(frozen=True)
 class JudgedBy:
-    """How many validation pairs a gain was found on, and of how many scenes."""
+    """Numbers of validation pairs and of their scenes."""
 
     pairs: int
     scenes: int
@@ -48,24 +49,24 @@ class JudgedBy:
 
 @dataclass(frozen=True)
 class Finding:
-    """How a search ended.
+    """The result of a search.
 
     Parameters
     ----------
     space : SearchSpace
     tried : int
-        Candidates, the default among them.
+        Number of candidates, including the default.
     best : mapping
-        The setting that is best on the training pairs; empty: the default.
+        The best setting on the training pairs; empty for the default.
     gain, low, high : float
-        Of its score over the default's on validation pairs, with a 95 % interval; 0 for the
+        Gain in score over the default on validation pairs, with its 95 % interval; 0 for the
         default.
     default, tuned : Figures or None
-        On validation pairs.
+        Figures on validation pairs.
     pays : bool
-        Whether it is to be used.
+        Whether the setting is kept.
     why_not : str
-        Why it does not pay.
+        Why it is not kept.
     judged_by : JudgedBy or None
         None for the default.
     """
@@ -85,7 +86,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class TuningDataset:
-    """A data set that is searched on."""
+    """A dataset of a search: its evaluator, engine and split."""
 
     evaluator: PairEvaluator
     engine: Engine
@@ -101,9 +102,9 @@ class Search:
     objective : SearchObjective
     seed : int
     deadline : float
-        By `time.monotonic`; what is not finished then stays at its default.
+        In seconds of `time.monotonic`; methods that are not finished then keep their default.
     watch : callable
-        Told what the workers are doing.
+        Called with the activities of the workers.
     """
 
     def __init__(
@@ -122,9 +123,9 @@ class Search:
         objective = threshold_objective() if space.kind == "threshold" else self._objective
         training, judging = self._pairs(space, "training"), self._pairs(space, "validation")
         if space.kind == "threshold" and not (training and judging):
-            return _kept(space, 0, "no ground truth to judge thresholds by")
+            return _kept(space, 0, "no ground truth to validate thresholds")
         if len(judging) < FEWEST_TO_JUDGE:
-            return _kept(space, 0, f"fewer than {FEWEST_TO_JUDGE} pairs to judge by")
+            return _kept(space, 0, f"fewer than {FEWEST_TO_JUDGE} validation pairs")
         candidates = list(range(len(space.settings)))
         if len(candidates) > LARGE_GRID:
             part = training[: max(round(FIRST_PART * len(training)), FEWEST_PAIRS)]
@@ -160,7 +161,7 @@ class Search:
         default, tuned = (self._figures(space, each, pairs) for each in (0, best))
         why_not = ""
         if low <= 0:
-            why_not = "the gain is not sure on validation pairs"
+            why_not = "the gain is not significant on validation pairs"
         elif gain < objective.least_gain(first):
             why_not = "the gain is too small to matter"
         judged_by = JudgedBy(len(pairs), len(set(scenes)))

@@ -16,26 +16,27 @@ from aerocues.tuning.valuation import Valuation
 
 CUES = "cues"
 FEWEST_SCENES = 3
-"""Whose means show how far scenes differ; of fewer an interval would be endless."""
+"""Scenes whose means give an interval: with two, Student's t makes it uselessly wide."""
 LEAST_GAIN = 0.005
-"""In CUES, or of what the default has of a criterion: less is not worth a departure from it."""
+"""Smallest gain to keep, in CUES or relative to the default's criterion: smaller gains are not
+worth deviating from the default."""
 GEOMETRY = Criterion(
     "geometry_auc",
     column='coalesce("homography_auc@3", "pose_auc@10", 0)',
     description="accuracy of the homography up to 3 px, or of the pose up to 10 degrees",
 )
-"""What inlier thresholds are judged by: more inliers are no merit of theirs."""
+"""The objective of inlier thresholds: larger thresholds give more inliers, but not better ones."""
 
 
 @dataclass(frozen=True)
 class SearchObjective:
-    """Criteria and how they become one score.
+    """Criteria, and how they are combined into a score.
 
     Parameters
     ----------
     criteria : tuple of Criterion
     objective : Objective or None
-        None where there is one criterion, whose mean is the score.
+        None for a single criterion: its mean is the score.
     settings : ScoreSettings
     """
 
@@ -44,18 +45,18 @@ class SearchObjective:
     settings: ScoreSettings = ScoreSettings()  # noqa: RUF009 - it is frozen
 
     def scores(self, training: Array) -> Array:
-        """(A,) scores of candidates from (A, P, C) values, NaN where one failed."""
+        """(A,) scores of candidates from (A, P, C) values; NaN where one failed."""
         return np.asarray(self._valued(training, training, None).mean(axis=1))
 
     def on_others(self, training: Array, values: Array) -> Array:
-        """(B, P) scores of other values (B, P, C), weighed as in training."""
+        """(B, P) scores of other values (B, P, C), with the weights from training."""
         weights = None
         if self.objective is not None:
             weights = self._valuation(self._filled(training), None).weights
         return self._valued(values, values, weights)
 
     def least_gain(self, default: Array) -> float:
-        """What a gain over these scores of the default must be to be worth it."""
+        """The smallest gain over these scores of the default that is worth keeping."""
         scale = 1.0 if self.objective is not None else abs(float(default.mean()))
         return LEAST_GAIN * scale
 
@@ -73,7 +74,7 @@ class SearchObjective:
         return Valuation(expected, self.criteria, blocks, self.settings, self.objective, weights)
 
     def _filled(self, values: Array) -> Array:
-        """With the worst value of each criterion where one failed; shares and counts fail at 0."""
+        """Failures replaced by the worst value of each criterion; 0 for shares and counts."""
         costs = np.array([criterion.better == "lower" for criterion in self.criteria])
         known = np.where(np.isnan(values), -np.inf, values)
         most = np.where(np.isfinite(known.max(axis=(0, 1))), known.max(axis=(0, 1)), 0.0)
@@ -86,7 +87,7 @@ def search_objective(name: str) -> SearchObjective:
     Raises
     ------
     ScoreError
-        If there is no such criterion, or it is one of 3D models.
+        If there is no such criterion, or it is a criterion of 3D models.
     """
     if name.lower() == CUES:
         preset = score_preset_named("default")
@@ -95,29 +96,29 @@ def search_objective(name: str) -> SearchObjective:
     [criterion] = criteria_named([name])
     if criterion.reconstruction:
         raise ScoreError(
-            f"{criterion.name} is a figure of 3D models, which a search does not make; choose one "
-            "of image pairs, such as excess_inliers"
+            f"{criterion.name} is a figure of 3D models, which a search does not make; choose a "
+            "criterion of image pairs, such as excess_inliers"
         )
     return SearchObjective((criterion,))
 
 
 def threshold_objective() -> SearchObjective:
-    """What inlier thresholds are judged by."""
+    """The objective of searches for inlier thresholds."""
     return SearchObjective((GEOMETRY,))
 
 
 def mean_gain(gains: Array, scenes: Sequence[Hashable]) -> tuple[float, float, float]:
-    """Mean of the gains of pairs, and its 95 % interval: Student's t.
+    """Mean gain over pairs with its 95 % interval (Student's t).
 
-    Pairs of one scene gain or lose together. From three scenes on, the interval therefore comes
-    from how far the means of the scenes lie apart, with the weights that they have in the mean over
-    the pairs, and tells of other scenes, too. Fewer scenes tell nothing of others: the interval
-    then comes from the pairs, and tells of these scenes only.
+    The gains of pairs of one scene are correlated. With three or more scenes the interval therefore
+    comes from the spread of the means of the scenes, weighted by their numbers of pairs, and
+    generalises to other scenes. With fewer scenes it comes from the pairs and holds only for these
+    scenes.
 
     Parameters
     ----------
     gains : (P,) float64
-        Of two pairs at least.
+        Gains of at least two pairs.
     scenes : sequence of hashable
         The scene of each pair.
     """

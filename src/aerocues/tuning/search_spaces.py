@@ -27,11 +27,11 @@ class SearchSpace:
     Parameters
     ----------
     kind : {"detector", "descriptor", "pair", "threshold"}
-        ``pair``: a descriptor on the keypoints of one detector.
+        ``pair`` is a descriptor on the keypoints of one detector.
     combination : Combination
         In which the candidates are evaluated.
     settings : tuple of mapping
-        What differs from the default in each candidate; the first is the default.
+        The values of each candidate that differ from the default; the first is the default.
     """
 
     kind: Kind
@@ -50,7 +50,7 @@ class SearchSpace:
         }[self.kind]
 
     def clashes(self, other: SearchSpace) -> bool:
-        """Whether a preset would mix what both find in a setting that nobody measured."""
+        """Whether a preset would combine both results into a setting that was never measured."""
         kinds = {self.kind, other.kind}
         same_method = self.name == other.name or (
             kinds == {"descriptor", "pair"}
@@ -62,7 +62,7 @@ class SearchSpace:
         return {name for setting in self.settings for name in setting}
 
     def variant(self, number: int) -> Combination:
-        """How candidate `number` is called where it is measured; the default has its own name."""
+        """The name under which candidate `number` is measured; the default keeps its own."""
         if not number:
             return self.combination
         own, found = f"_V{number}", self.combination
@@ -104,7 +104,7 @@ class SearchSpace:
         }
 
     def applied(self, preset: Preset, setting: Setting, methods: Methods) -> Preset:
-        """The preset with a setting of this space."""
+        """The preset, extended by a setting of this space."""
         detector, descriptor = self.combination.detector, self.combination.descriptor
         both = f"{detector}-{descriptor}"
         if self.kind == "threshold":
@@ -134,12 +134,12 @@ def _with(
 def search_spaces_named(
     names: Sequence[str], methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
 ) -> list[SearchSpace]:
-    """What several texts ask to be searched, each once; see `search_spaces_of`.
+    """The search spaces of several names, each once; see `search_spaces_of`.
 
     Raises
     ------
     SelectionError
-        If there is nothing to search, or two searches would set the same parameters.
+        If there are none, or two searches would set the same parameters.
     """
     found: list[SearchSpace] = []
     for each in (space for name in names for space in search_spaces_of(name, methods, grid)):
@@ -149,34 +149,36 @@ def search_spaces_named(
             if other.clashes(each):
                 raise SelectionError(
                     f"{other.name} in {other.combination} and {each.name} in {each.combination} "
-                    "would set the same parameters; tune one at a time, each into a preset of its "
-                    "own"
+                    "would set the same parameters; tune them one at a time, each into a preset "
+                    "of its own"
                 )
         found.append(each)
     if not found:
-        raise SelectionError("no method is named; give such as LATCH, ORB-BEBLID-HAM-BF or 'all'")
+        raise SelectionError(
+            "no method is named; give LATCH, ORB-BEBLID-HAM-BF or 'all', for example"
+        )
     return found
 
 
 def search_spaces_of(
     text: str, methods: Methods, grid: Mapping[str, tuple[Value, ...]] | None = None
 ) -> list[SearchSpace]:
-    """What a text asks to be searched.
+    """The search spaces of a name.
 
     Parameters
     ----------
     text : str
-        A method (``LATCH``; both where a detector and a descriptor have the name, else
-        ``detector:ORB`` or ``descriptor:ORB``), ``all``, or a combination, of which the detector,
-        then the descriptor on its keypoints and the inlier threshold are searched.
+        A method (``LATCH``; a name that a detector and a descriptor share means both, and
+        ``detector:ORB`` or ``descriptor:ORB`` one of them), ``all``, or a combination: its
+        detector, its descriptor on the detector's keypoints, and its inlier threshold.
     methods : Methods
     grid : mapping, optional
-        Values to try in place of the default ones; for one detector or descriptor.
+        Values to try in place of the built-in ones; for one detector or descriptor.
 
     Raises
     ------
     SelectionError
-        If there is no such method, or nothing to try for it.
+        If there is no such method, or no grid for it.
     """
     wanted = text.strip().upper()
     if grid is not None and ("-" in wanted or wanted.rpartition(":")[2] == EVERYTHING):

@@ -1,4 +1,4 @@
-"""The time that a race has, and what is measured in it, step by step."""
+"""The time budget of a race, and its measurements step by step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from aerocues.evaluation.engine import Activity, Engine
 from aerocues.tuning.journal import Journal, Step
 from aerocues.tuning.pair_evaluator import Measurement, PairEvaluator
 
-# Less than this much more seldom helps where a budget was too small.
+# The suggested budget over one that was too small. A smaller factor often fails again, a larger one
+# makes users wait longer than needed.
 MORE = 3.0
 BUDGETS = (10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 
@@ -18,18 +19,18 @@ BUDGETS = (10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 class Session:
     """Measures within a budget of wall time.
 
-    What its journal tells of an earlier, interrupted race is gone through again without measuring,
-    so that the same decisions are taken.
+    The steps that the journal has of an interrupted race are replayed without measuring, so that
+    the same decisions are made.
 
     Parameters
     ----------
     journal : Journal
     began : float, optional
-        When it began, by `clock`; now by default.
+        Start time in seconds of `clock`; now by default.
     watch : callable, optional
-        Told what the workers are doing.
+        Called with the activities of the workers.
     clock : callable, optional
-        Gives seconds.
+        Returns seconds.
     """
 
     def __init__(
@@ -42,7 +43,7 @@ class Session:
     ) -> None:
         self.budget = journal.budget
         self.spent = 0.0
-        """Seconds so far, with those that are kept for the end."""
+        """Seconds so far, including those reserved for the end."""
         self._journal, self._watch, self._clock = journal, watch, clock
         self._began = (clock() if began is None else began) - journal.spent
 
@@ -55,7 +56,7 @@ class Session:
         until: float = float("inf"),
         keep: float = 0.0,
     ) -> frozenset[str]:
-        """Measure what is not there yet, and give back the keys of rows not obtained in time.
+        """Measure what is missing, and return the keys of rows that were not finished in time.
 
         Parameters
         ----------
@@ -63,9 +64,9 @@ class Session:
         engine : Engine
         asked : sequence of Measurement
         until : float
-            Seconds of the budget after which what is unfinished is given up; all by default.
+            Seconds of the budget after which unfinished rows are dropped; all by default.
         keep : float
-            Seconds of the budget that are kept for what follows the last step.
+            Seconds of the budget that are reserved for the time after the last step.
         """
         keys = [evaluator.row_key(each) for each in asked]
         there = [
@@ -100,7 +101,7 @@ class Session:
         return self._journal.add(keys, spent, keep, missing)
 
     def too_small(self, why: str) -> SelectionError:
-        """The error that says so, and which budget is likely to do."""
+        """The error for a budget that is too small; it suggests a larger one."""
         wanted = MORE * max(self.budget, self.spent)
         enough = next((each for each in BUDGETS if each >= wanted), round(wanted))
         return SelectionError(

@@ -1,4 +1,4 @@
-"""Pairs to choose by and pairs to judge by, never of the same scene."""
+"""Training and validation pairs, never of the same scene."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FEWEST = 2
 
 @dataclass(frozen=True)
 class Split:
-    """Numbers of pairs of one data set, and how they were divided."""
+    """Training and validation pairs of one dataset, and how they were divided."""
 
     training: tuple[int, ...]
     validation: tuple[int, ...]
@@ -24,10 +24,10 @@ class Split:
 
 
 def split_pairs(datasets: Sequence[Dataset], seed: int, most: int) -> list[Split]:
-    """Divide the pairs of data sets in two halves.
+    """Divide the pairs of datasets into training and validation.
 
-    Sequences go to one side as wholes. Where there is one sequence in all, a flight, its first
-    half is for training and its second for validation, without pairs that share an image.
+    A sequence is never divided, unless it is the only one, as in a flight: then its first half is
+    for training and its second half for validation, without pairs that share an image.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def split_pairs(datasets: Sequence[Dataset], seed: int, most: int) -> list[Split
     seed : int
         Decides which sequences are for training.
     most : int
-        Pairs of each side, about; each data set gives as many, spread evenly over it.
+        Approximate number of pairs of each side; all datasets contribute equally, evenly spread.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def split_pairs(datasets: Sequence[Dataset], seed: int, most: int) -> list[Split
 def given_split(
     training: Sequence[Dataset], validation: Sequence[Dataset], most: int
 ) -> list[Split]:
-    """Pairs to choose by from some data sets, and pairs to judge by from others.
+    """Training pairs from some datasets, and validation pairs from others.
 
     Raises
     ------
@@ -72,11 +72,11 @@ def given_split(
     """
     nothing: tuple[int, ...] = ()
     splits = [
-        Split(_numbers(dataset.pairs, _share(most, len(training))), nothing, "data set")
+        Split(_numbers(dataset.pairs, _share(most, len(training))), nothing, "dataset")
         for dataset in training
     ]
     splits += [
-        Split(nothing, _numbers(dataset.pairs, _share(most, len(validation))), "data set")
+        Split(nothing, _numbers(dataset.pairs, _share(most, len(validation))), "dataset")
         for dataset in validation
     ]
     _check(splits)
@@ -87,7 +87,7 @@ def _check(splits: Sequence[Split]) -> None:
     for side in ("training", "validation"):
         if sum(len(getattr(split, side)) for split in splits) < FEWEST:
             raise DatasetError(
-                f"fewer than {FEWEST} pairs are left for {side}; give more images or data sets"
+                f"fewer than {FEWEST} pairs are left for {side}; give more images or datasets"
             )
 
 

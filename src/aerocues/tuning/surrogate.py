@@ -1,9 +1,9 @@
-"""What is expected of measurements that were not made, from those that were.
+"""Predicts the measurements that were not made from those that were.
 
-Values add up, on their scales, from the effects of detector, descriptor and matcher (over all, and
-in each block of pairs), of the combination itself (likewise) and of the pair: a mixed linear model,
-fitted by backfitting with ridge penalties in place of variances (Hastie, Tibshirani and Friedman,
-"The Elements of Statistical Learning", 2009, section 9.1).
+A transformed value is the sum of effects of detector, descriptor and matcher (overall and in each
+block of pairs), of the combination (likewise) and of the pair: a mixed linear model, fitted by
+backfitting with ridge penalties in place of variances (Hastie, Tibshirani and Friedman, "The
+Elements of Statistical Learning", 2009, section 9.1).
 """
 
 from __future__ import annotations
@@ -15,15 +15,19 @@ from numpy.typing import NDArray
 
 from aerocues.tuning.scales import Array, Mask
 
+# Passes of backfitting: more fit closer and take proportionally longer, in every round of a race.
 _ROUNDS = 4
-# Penalties: how many measurements an effect needs to count half.
+# Ridge penalties: the number of measurements at which an effect is shrunk to half. Higher ones need
+# more data before they trust an effect; effects in one block have fewer data, and a higher penalty.
 _OF_METHODS, _OF_METHODS_IN_BLOCK = 1.0, 4.0
 _OF_ALTERNATIVE, _OF_ALTERNATIVE_IN_BLOCK = 0.5, 1.0
 _OF_PAIR = 1.0
+# An alternative's own noise needs 3 measurements of it, and 30 of such measurements in all; with
+# fewer, the residuals of all alternatives are used, which are wider.
 _OFTEN, _ENOUGH = 3, 30
 _NEXT_TO_NOTHING = 1e-9
 _SPREAD_IN_BLOCK = 0.7
-"""How much combinations differ from block to block, over how much they differ at all."""
+"""Spread of a combination between blocks over its whole spread: higher values keep races longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,19 +37,19 @@ class Surrogate:
     Parameters
     ----------
     expected : (A, P, C) float64
-        On the scales of `Scales`; measured cells included.
+        Transformed by `Scales`; including the measured cells.
     counts : (A,) int
         Measured cells of each alternative.
     counts_in_block : (A, B) int
     block_of : (P,) int
-        Positions of the blocks of pairs, from 0.
+        Number of the block of each pair, from 0.
     residuals : (N, C) float64
-        What methods and pairs leave unexplained of measured cells.
+        Residuals of the measured cells after the effects of methods and pairs.
     noise : (M, C) float64
-        What the alternatives' own effects leave of those that were measured often.
+        Residuals after the alternatives' own effects, of often measured alternatives.
     features : (A, K) float64
     groups : (K,) int64
-        What kind of method each column is: detector, descriptor, matcher or two together.
+        Kind of method of each column: detector, descriptor, matcher or a pair of methods.
     coefficients : (K, C) float64
         Effects of the methods.
     """
@@ -61,12 +65,11 @@ class Surrogate:
     coefficients: Array
 
     def draw(self, rng: np.random.Generator) -> Array:
-        """(A, P, C) of what may be true of cells that were not measured.
+        """(A, P, C) plausible values of the cells, drawn around the expected ones.
 
-        An alternative departs from what its methods lead one to expect as measured ones do, the
-        less the more it was measured; all criteria of one cell together, as they belong together.
-        So do methods from what is known of them: one that was never measured, as much as methods
-        differ at all.
+        An alternative deviates from the prediction like the measured alternatives do, and less the
+        more often it was measured; all criteria of a cell are drawn together, as they correlate.
+        Effects of methods deviate likewise: that of an unmeasured method as much as methods differ.
         """
         alternatives, blocks = self.counts_in_block.shape
         own = _drawn(self.residuals, self.noise, self.counts, rng)
@@ -80,7 +83,7 @@ class Surrogate:
         return drawn
 
     def _methods(self, rng: np.random.Generator) -> Array:
-        """(K, C) departures of the methods' effects: as wide as a ridge regression knows them."""
+        """(K, C) deviations of the methods' effects, as wide as ridge regression estimates them."""
         counts = (self.features * self.counts[:, None]).sum(axis=0)
         noise = np.maximum(self.residuals.std(axis=0), _NEXT_TO_NOTHING)
         departures = np.zeros_like(self.coefficients)
@@ -101,17 +104,17 @@ def fit(
     groups: NDArray[np.int64],
     blocks: NDArray[np.int64],
 ) -> Surrogate:
-    """Fit the model to the cells that are known.
+    """Fit the model to the known cells.
 
     Parameters
     ----------
     stretched : (A, P, C) float64
-        On their scales; read where known only.
+        Transformed values; only known cells are read.
     known : (A, P) bool
     features : (A, K) float64
-        1 for each method that an alternative is made of.
+        Indicators: 1 for each method of an alternative.
     groups : (K,) int64
-        Columns of one kind of method have one number.
+        Columns of the same kind of method have the same number.
     blocks : (P,) int64
     """
     names, block_of = np.unique(blocks, return_inverse=True)
@@ -155,7 +158,7 @@ def fit(
 
 
 def _noise(residuals: Array, alternative: NDArray[np.intp], counts: NDArray[np.intp]) -> Array:
-    """How residuals of the same alternative differ; all of them where none was measured often."""
+    """Residuals within often measured alternatives; all residuals if there are too few."""
     often = counts[alternative] >= _OFTEN
     if often.sum() < _ENOUGH:
         return residuals
@@ -168,7 +171,7 @@ def _noise(residuals: Array, alternative: NDArray[np.intp], counts: NDArray[np.i
 def _drawn(
     residuals: Array, noise: Array, counts: NDArray[np.intp], rng: np.random.Generator
 ) -> Array:
-    """(A, C) departures of alternatives: of one not measured by any residual, else by noise."""
+    """(A, C) deviations of alternatives: drawn from noise if measured, else from all residuals."""
     unknown = residuals[rng.integers(len(residuals), size=len(counts))]
     known = noise[rng.integers(len(noise), size=len(counts))]
     known = known * np.sqrt(1.0 / np.maximum(counts, 1))[:, None]

@@ -1,7 +1,7 @@
-"""What measurements are worth under an objective, with bounds and weights held still.
+"""Scores of tables under an objective, with fixed bounds and weights.
 
-Bounds and weights come from the table that is expected; tables drawn around it are valued under
-the same ones, for drawn ones would only add noise.
+Bounds and weights come from the expected table. Tables drawn around it are scored with the same
+ones: bounds and weights of each drawn table would only add noise.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ class Valuation:
     Parameters
     ----------
     expected : (A, P, C) float64
-        What is known or expected; it sets the bounds and weights.
+        Known or expected values, which determine bounds and weights.
     criteria : sequence of Criterion
     blocks : (P,) int64
     settings : ScoreSettings
     objective : Objective
     weights : (C,) float64, optional
-        In place of those that the expected values give.
+        In place of weights from the expected values.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Valuation:
 
 
 def _membership(blocks: NDArray[np.int64]) -> Array:
-    """(B, P): what a pair counts in the mean of a block; of one block, each pair is its own."""
+    """(B, P) weight of a pair in the mean of a block; with one block, each pair is a block."""
     names = np.unique(blocks)
     if len(names) == 1:
         return np.eye(len(blocks))
@@ -88,13 +88,13 @@ def _membership(blocks: NDArray[np.int64]) -> Array:
 
 
 def chances(drawn: Array) -> Array:
-    """(A,) share of the drawn tables, (draws, A) of scores, in which an alternative is the best."""
+    """(A,) share of the drawn tables, (draws, A) scores, in which an alternative is the best."""
     best = np.argmax(drawn, axis=1)
     return np.asarray(np.bincount(best, minlength=drawn.shape[1]) / len(drawn))
 
 
 def interest_of(drawn: Array, few: int) -> Array:
-    """(A,) share of the drawn tables in which it is the best, and among the few best."""
+    """(A,) share of tables in which it is the best, plus that in which it is among the few best."""
     top = np.argsort(-drawn, axis=1, kind="stable")[:, :few]
     among = np.bincount(top.ravel(), minlength=drawn.shape[1]) / len(drawn)
     return np.asarray(chances(drawn) + among)
