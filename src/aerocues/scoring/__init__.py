@@ -1,4 +1,4 @@
-"""Scores any table of alternatives x criteria x repeats, and tells how sure the score is."""
+"""Scores any table of alternatives x criteria x repeats, with the uncertainty of the scores."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compares results folders: data sets with each other, machines with each other."""
+"""Compares results folders across datasets and across machines."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ UNKNOWN_MACHINE = "unknown machine"
 
 
 class Stored(Measured, Protocol):
-    """Results that lie somewhere."""
+    """Results in a folder."""
 
     @property
     def folder(self) -> Path:
-        """Where."""
+        """The folder, or the packed file."""
         ...
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One data set as one machine measured it.
+    """One dataset, measured by one machine.
 
     Attributes
     ----------
     name : str
-        The dataset, with the machine or the folder where that alone is ambiguous.
+        The dataset; with the machine or the folder if the dataset alone is ambiguous.
     dataset, machine : str
     rows : pl.DataFrame
     scores : Scores
     preset : str
     reconstructed : bool
-        Whether there are reconstructions of it.
+        Whether it has reconstructions.
     source : int
-        Position of the results that it came from.
+        Index of the results that it comes from.
     """
 
     name: str
@@ -60,15 +60,15 @@ class Entry:
 
 @dataclass(frozen=True)
 class Machines:
-    """The same data set on two machines.
+    """The same dataset on two machines.
 
     Attributes
     ----------
     first, second : Entry
     rankings : Comparison
-        Of the two.
+        The two rankings.
     times : pl.DataFrame or str
-        See `platforms.compare_times`; or why they cannot be compared.
+        See `platforms.compare_times`; a text says why they cannot be compared.
     """
 
     first: Entry
@@ -77,7 +77,7 @@ class Machines:
     times: pl.DataFrame | str
 
     def ranks(self) -> pl.DataFrame:
-        """Scores and ranks side by side, by the rank on the first machine.
+        """Scores and ranks side by side, sorted by the rank on the first machine.
 
         Returns
         -------
@@ -107,7 +107,7 @@ def entries_of(
     reconstruction: bool | None = False,
     **changes: object,
 ) -> list[Entry]:
-    """Score every data set in some results, each machine by itself.
+    """Score every dataset in the results, separately for each machine.
 
     Parameters
     ----------
@@ -115,20 +115,20 @@ def entries_of(
     preset, criteria
         See `measured.table_of`.
     reconstruction : bool or None
-        Whether to add the criteria of reconstruction, which all of the results then need; None:
-        where there is one data set on one machine, of which most combinations were reconstructed.
+        Whether to add the criteria of reconstruction, which all results must then have. None adds
+        them if there is one dataset on one machine and most combinations were reconstructed.
     **changes
-        Of the preset's settings; None changes nothing.
+        Settings in place of the preset's; None keeps the preset's.
 
     Raises
     ------
     ScoreError
-        If one of them cannot be scored.
+        If one of the results cannot be scored.
     """
     folders = [each.folder.resolve() for each in results]
     for folder in folders:
         if folders.count(folder) > 1:
-            raise ScoreError(f"{folder} is named twice; name each result once")
+            raise ScoreError(f"{folder} is given twice; give each result once")
     groups = [
         (source, names, rows)
         for source, each in enumerate(results)
@@ -169,7 +169,7 @@ def _by_dataset_and_machine(
 
 
 def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
-    """The shortest names that tell all entries apart."""
+    """The shortest names that are unique."""
     for form in ("{dataset}", "{dataset} ({machine})", "{folder}", "{folder} {dataset}"):
         names = [
             form.format(dataset=entry.dataset, machine=entry.machine, folder=folder.name)
@@ -189,7 +189,7 @@ def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Compa
 
 
 def compare_machines(entries: Sequence[Entry], over: Over = "pairwise") -> list[Machines]:
-    """Compare every two entries that are the same data set on different machines."""
+    """Compare all pairs of entries with the same dataset on different machines."""
     return [
         _two_machines(first, second, over)
         for first, second in combinations(entries, 2)

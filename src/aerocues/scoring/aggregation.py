@@ -1,4 +1,4 @@
-"""How the weights of several methods become one set: one row each."""
+"""Ways to aggregate the weights of several methods: one row each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _harmonic(weights: Array) -> Array:
 
 
 def _trimmed(weights: Array) -> Array:
-    """Mean without the smallest and the largest: of four, the two middle ones."""
+    """Mean without the smallest and the largest value: of four, the mean of the middle two."""
     if weights.shape[-2] < MIDDLE:
         return np.asarray(weights.mean(axis=-2))
     return np.asarray(np.sort(weights, axis=-2)[..., 1:-1, :].mean(axis=-2))
@@ -42,15 +42,15 @@ def aggregate(weights: Array, name: str) -> Array:
     Parameters
     ----------
     weights : (..., methods, criteria) float64
-        Each set not negative and summing to 1.
+        Non-negative; each set sums to 1.
     name : str
         A row of `AGGREGATIONS`.
 
     Returns
     -------
     (..., criteria) float64
-        Summing to 1; where the methods share no criterion with a weight above 0 (geometric,
-        harmonic), the arithmetic mean.
+        The sum is 1. If no criterion has a positive weight by all methods, the geometric and
+        harmonic means are undefined and the arithmetic mean is returned.
     """
     combined = AGGREGATIONS[name](weights)
     total = combined.sum(axis=-1, keepdims=True)

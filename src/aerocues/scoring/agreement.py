@@ -1,7 +1,7 @@
-"""How other methods of multi-criteria decision making rank the same alternatives.
+"""Rankings of the same alternatives by other methods of multi-criteria decision making.
 
-All but COPRAS are those of pymcdm, independent of the score. They get the normalised criteria
-before the power alpha and the weights of the score.
+All except COPRAS come from pymcdm and are independent of our code. Their input is the normalised
+criteria before the power alpha, and the weights of the score.
 """
 
 from __future__ import annotations
@@ -23,29 +23,29 @@ LEAST_COST = 1e-9
 
 
 def _copras(matrix: Array, weights: Array, types: NDArray[np.int64]) -> Array:
-    """COPRAS (Zavadskas and Kaklauskas 1996); that of pymcdm adds the costs to the benefits."""
+    """COPRAS (Zavadskas and Kaklauskas 1996); pymcdm's version adds costs to benefits."""
     weighted = weights * matrix / matrix.sum(axis=0)
     benefit, cost = weighted[:, types > 0].sum(axis=1), weighted[:, types < 0].sum(axis=1)
-    # An alternative without any cost gets the whole of what the costs are worth.
+    # The limit avoids a division by zero: an alternative without cost gets the full cost term.
     inverse = 1 / np.maximum(cost, LEAST_COST)
     return np.asarray(benefit + cost.sum() * inverse / inverse.sum())
 
 
 @dataclass(frozen=True)
 class RankingMethod:
-    """One method.
+    """One ranking method.
 
     Attributes
     ----------
     name : str
     kind : str or callable
-        Its class in pymcdm, or a function of matrix, weights and types (-1 for costs).
+        Class in pymcdm, or a function of matrix, weights and types (-1 for costs).
     arguments : tuple
-        Of that class.
+        Arguments of the class.
     higher_is_better : bool
-        Whether higher preferences are the better ones.
+        Whether higher preferences are better.
     needs_costs : bool
-        Whether costs stay costs, one at least, where the others get all criteria as benefits.
+        Whether costs remain costs (at least one is needed); otherwise all criteria are benefits.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Agreement:
         CUES first.
     correlation : (methods, methods) float64
     best : tuple of str
-        The best alternative of each.
+        Best alternative by each method.
     """
 
     names: tuple[str, ...]
@@ -83,7 +83,7 @@ class Agreement:
 
 
 def agreement(scores: Scores) -> Agreement:
-    """Rank the alternatives by other methods and compare.
+    """Rank the alternatives by other methods, and correlate the rankings.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def agreement(scores: Scores) -> Agreement:
     """
     taking_part = np.flatnonzero(~np.isnan(scores.scores))
     matrix = scores.normalised[taking_part] ** (1 / scores.settings.alpha)
-    # A constant criterion tells nothing, and their normalisations divide by its range.
+    # A constant criterion has no information, and the normalisations divide by its range.
     kept = (scores.weights > 0) & (np.ptp(matrix, axis=0) > 0)
     weights, is_cost = scores.weights[kept], scores.table.is_cost[kept]
     rows = [scores.scores[taking_part]]
@@ -108,7 +108,7 @@ def agreement(scores: Scores) -> Agreement:
 def _preferences(
     method: RankingMethod, matrix: Array, weights: Array, is_cost: NDArray[np.bool_]
 ) -> Array:
-    """Preferences, higher being better; NaN where the method is not defined."""
+    """Preferences (higher is better); NaN if the method is undefined."""
     try:
         from pymcdm import methods
     except ImportError as error:

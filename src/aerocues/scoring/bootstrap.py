@@ -1,4 +1,4 @@
-"""How sure a score is: what it would have been on other repeats of the same kind."""
+"""Uncertainty of the scores, by resampling the repeats."""
 
 from __future__ import annotations
 
@@ -25,16 +25,15 @@ class Bootstrap:
     Attributes
     ----------
     scores, ranks : (resamples, alternatives) float64
-        NaN where an alternative had no valid repeat in a resample.
+        NaN where an alternative has no valid repeat in a resample.
     on_one_scale : (resamples, alternatives) float64
-        Scores with the bounds and weights of the table as it is: what is left is the luck of the
-        repeats, without that of the scale.
+        Scores with the bounds and weights of the original table: only the variation of the repeats,
+        without that of the scale.
     weights : (resamples, criteria) float64
     unit : {"block", "repeat"}
-        What was drawn.
+        What is resampled.
     units : int
-        How many of them there are. A single one says nothing of how sure a score is: intervals
-        and probabilities are NaN.
+        Number of units. With a single unit, intervals and probabilities are NaN.
     """
 
     scores: Array
@@ -45,17 +44,17 @@ class Bootstrap:
     units: int
 
     def score_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Lower and upper end, (alternatives,) each, of the percentile interval of the score."""
+        """Lower and upper bound, (alternatives,) each: percentile interval of the score."""
         low, high = _interval(self.scores, confidence)
         return self._where_known(low), self._where_known(high)
 
     def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Best and worst rank, (alternatives,) each, of the percentile interval of the rank."""
+        """Best and worst rank, (alternatives,) each: percentile interval of the rank."""
         low, high = _interval(self.ranks, confidence)
         return self._where_known(np.floor(low)), self._where_known(np.ceil(high))
 
     def probability_best(self) -> Array:
-        """(alternatives,) share of the resamples in which each is the best; equals share it."""
+        """(alternatives,) share of the resamples in which each is the best; ties share it."""
         first = self.ranks == 1
         share = first / np.maximum(first.sum(axis=1, keepdims=True), 1)
         return self._where_known(share.mean(axis=0))
@@ -71,17 +70,17 @@ class Bootstrap:
 def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Bootstrap:
     """Score resamples of the repeats.
 
-    Repeats, or whole blocks of them, are drawn with replacement, the same for all alternatives,
-    and everything is estimated anew: bounds, means and weights.
+    Repeats, or whole blocks of them, are drawn with replacement, jointly for all alternatives.
+    Bounds, means and weights are estimated anew in each resample.
 
     Parameters
     ----------
     scores : Scores
-        Of the table as it is.
+        Scores of the original table.
     resamples : int
-        2 or more.
+        At least 2.
     seed : int
-        0 or more.
+        At least 0.
 
     Raises
     ------
@@ -89,9 +88,9 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
         If there are fewer than 2 resamples or the seed is negative.
     """
     if resamples != int(resamples) or resamples < 2:
-        raise ScoreError(f"{resamples} resamples cannot be drawn; take 2 or more, such as 1000")
+        raise ScoreError(f"resamples must be a whole number of at least 2, got {resamples}")
     if seed != int(seed) or seed < 0:
-        raise ScoreError(f"the seed is {seed}; give a whole number, 0 or more")
+        raise ScoreError(f"seed must be a whole number of at least 0, got {seed}")
     table, sums = scores.table, Sums(scores.table)
     whole = sums.means(np.ones((1, len(table.repeats))))
     size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)
@@ -103,7 +102,7 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
         normalised = normalise(means, table, scores.settings.failures) ** scores.settings.alpha
         on_one_scale.append(normalised @ scores.weights)
     values = np.concatenate([batch.scores for batch in found])
-    # What has no score in the table takes no part.
+    # Alternatives without a score in the table are excluded.
     values[:, np.isnan(scores.scores)] = np.nan
     return Bootstrap(
         scores=values,

@@ -15,7 +15,7 @@ from aerocues.scoring.settings import ScorePreset, score_preset_named
 from aerocues.scoring.table import DecisionTable
 
 PAIR = ("dataset", "sequence", "image_1", "image_2", "pair")
-# By what scores are grouped: the plural, and the methods that make a label.
+# Groups of scores: the name of the group, and the methods that form its labels.
 COMPONENTS: dict[str, tuple[str, ...]] = {
     "detectors": ("detector",),
     "descriptors": ("descriptor",),
@@ -33,7 +33,7 @@ def has_chance_test(rows: pl.DataFrame) -> bool:
 
 
 def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
-    """The default where inliers beyond chance were measured, else that of the thesis."""
+    """The preset ``default`` if inliers beyond chance were measured, else ``thesis``."""
     return score_preset_named("default" if has_chance_test(rows) else "thesis")
 
 
@@ -49,28 +49,30 @@ def decision_table(
     Parameters
     ----------
     rows : pl.DataFrame
-        One row a pair and combination, of one dataset: ``detector, descriptor, norm, matcher,
-        pair, status`` and what the criteria need; ``sequence`` where there are several.
+        One row per pair and combination of one dataset: ``detector, descriptor, norm, matcher,
+        pair, status`` and the columns of the criteria; ``sequence`` if there are several.
     criteria : sequence of Criterion
     reconstructions : pl.DataFrame, optional
-        One row a combination, with ``status`` and what the criteria of reconstruction need. A
-        combination without a row was not reconstructed, and has no score by such criteria.
+        One row per combination, with ``status`` and the columns of the criteria of reconstruction.
+        A combination without a row was not reconstructed and has no score by these criteria.
     chance_fails : bool
         Whether a pair with the status ``chance`` has failed.
 
     Raises
     ------
     ScoreError
-        If the rows are of several datasets, there are none, or a column is missing.
+        If there are no rows, they belong to several datasets, or a column is missing.
     """
     if rows.is_empty():
         raise ScoreError("there are no measured rows; run 'aerocues run' first")
     datasets = rows["dataset"].unique().sort().to_list()
     if len(datasets) > 1:
-        raise ScoreError(f"the rows are of several datasets; choose one of {', '.join(datasets)}")
+        raise ScoreError(
+            f"the rows belong to several datasets; choose one of {', '.join(datasets)}"
+        )
     by_pair = [criterion for criterion in criteria if not criterion.reconstruction]
     if not by_pair:
-        raise ScoreError("all criteria are of the reconstruction; add one of the image pairs")
+        raise ScoreError("all criteria are of the reconstruction; add a criterion of image pairs")
     succeeded = SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
     table = DecisionTable.from_frame(
         _named(_without_failures(rows, succeeded)),
@@ -105,7 +107,7 @@ def _named(rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _without_failures(rows: pl.DataFrame, succeeded: Sequence[str]) -> pl.DataFrame:
-    """The rows with no number left in those that failed."""
+    """The rows; numbers of failed rows are null."""
     numbers = [
         name
         for name, kind in rows.schema.items()

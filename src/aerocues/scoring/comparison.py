@@ -1,4 +1,4 @@
-"""Rankings of the same alternatives on several data sets: how stable, and who is versatile."""
+"""Compares rankings of the same alternatives on several datasets."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ class Comparison:
     Attributes
     ----------
     names : tuple of str
-        Of the rankings.
+        Names of the rankings.
     alternatives : tuple of str
-        All that have a score in one ranking at least, by name.
+        All alternatives with a score in at least one ranking, sorted by name.
     scores : (rankings, alternatives) float64
         NaN where an alternative has no score.
     over : {"pairwise", "all"}
         Whether two rankings are compared over the alternatives scored in both, or over those
         scored in all rankings.
     datasets : tuple of str
-        What each ranking is about. Several rankings of one data set (by several machines) count
-        as one, their mean, where it is asked how versatile an alternative is.
+        Dataset of each ranking. For versatility, several rankings of one dataset (by several
+        machines) count once, with their mean.
     """
 
     names: tuple[str, ...]
@@ -51,32 +51,32 @@ class Comparison:
         return self.scores[:, in_all] if self.over == "all" else self.scores
 
     def spearman(self) -> Array:
-        """(rankings, rankings) Spearman's rank correlation; NaN where it is not defined."""
+        """(rankings, rankings) Spearman's rank correlation; NaN where undefined."""
         return rank_correlation(self._compared())
 
     def kendall(self) -> Array:
-        """(rankings, rankings) Kendall's tau-b; NaN where it is not defined."""
+        """(rankings, rankings) Kendall's tau-b; NaN where undefined."""
         return rank_correlation(self._compared(), "kendall")
 
     def shared(self) -> NDArray[np.int64]:
-        """(rankings, rankings) number of alternatives that two rankings are compared over."""
+        """(rankings, rankings) number of alternatives behind each correlation."""
         known = (~np.isnan(self._compared())).astype(np.int64)
         return np.asarray(known @ known.T)
 
     def ranks(self) -> Array:
-        """(rankings, alternatives) rank among all that have a score in a ranking, or NaN."""
+        """(rankings, alternatives) rank in each ranking; NaN without a score."""
         return rank(self.scores)
 
     def versatility(self) -> pl.DataFrame:
-        """How good each alternative is over all data sets, the best mean first.
+        """Scores and ranks of each alternative over all datasets, the best mean first.
 
         Returns
         -------
         pl.DataFrame
             ``alternative``; ``mean, min, spread`` (largest minus smallest) and
-            ``standard_deviation`` of its scores on the data sets; ``mean_rank, worst_rank`` among
-            all that have a score; ``datasets`` (on how many it has one); then ``score_NAME`` and
-            ``rank_NAME`` in each ranking. Alternatives scored on all data sets come first.
+            ``standard_deviation`` of its scores over the datasets; ``mean_rank, worst_rank``;
+            ``datasets`` (number of datasets with a score); then ``score_NAME`` and ``rank_NAME``
+            for each ranking. Alternatives scored on all datasets come first.
         """
         import polars as pl
 
@@ -100,7 +100,7 @@ class Comparison:
         return frame.sort("datasets", "mean", "alternative", descending=[True, True, False])
 
     def _by_dataset(self, values: Array) -> Array:
-        """(data sets, alternatives) mean over the rankings of each data set, or NaN."""
+        """(datasets, alternatives) mean over the rankings of each dataset, or NaN."""
         rows = []
         for dataset in dict.fromkeys(self.datasets):
             chosen = values[[each == dataset for each in self.datasets]]
@@ -121,21 +121,21 @@ def compare(
     Parameters
     ----------
     rankings : mapping of str to Scores
-        By the name of the data set, two or more.
+        At least two, by the name of the dataset.
     over : {"pairwise", "all"}
-        Which alternatives two rankings are compared over; see `Comparison`.
+        Over which alternatives two rankings are compared; see `Comparison`.
     datasets : sequence of str, optional
-        What each ranking is about, where several may be about the same; its name by default.
+        Dataset of each ranking; by default the ranking's name.
 
     Raises
     ------
     ScoreError
-        If there is one ranking only, or none shares an alternative with another.
+        If there is only one ranking, or no two rankings share an alternative.
     """
     if len(rankings) < 2:
-        raise ScoreError("one ranking cannot be compared; give two results or more")
+        raise ScoreError("a comparison needs at least two results")
     if over not in ("pairwise", "all"):
-        raise ScoreError(f"cannot compare over {over!r}; choose pairwise or all")
+        raise ScoreError(f"over must be pairwise or all, got {over!r}")
     scored = {
         name: {
             scores.table.alternatives[position]: scores.scores[position]
@@ -155,5 +155,5 @@ def compare(
     shared = comparison.shared()
     np.fill_diagonal(shared, 0)
     if not shared.any():
-        raise ScoreError("no alternative is in two of the results; there is nothing to compare")
+        raise ScoreError("no two results share an alternative, so there is nothing to compare")
     return comparison

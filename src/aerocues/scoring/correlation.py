@@ -16,7 +16,7 @@ FEWEST = 3
 
 
 def rank_correlation(rows: Array, method: Literal["spearman", "kendall"] = "spearman") -> Array:
-    """Rank correlation of every two rows, over the columns where both have a value.
+    """Rank correlation of all pairs of rows, over the columns where both have a value.
 
     Parameters
     ----------
@@ -28,16 +28,16 @@ def rank_correlation(rows: Array, method: Literal["spearman", "kendall"] = "spea
     Returns
     -------
     (rankings, rankings) float64
-        NaN where fewer than 3 alternatives are in both or one ranks them all alike.
+        NaN if fewer than 3 alternatives are in both, or one ranking has only ties.
     """
-    # Rounded as for ranks: what differs by rounding only is equal.
+    # Rounded as for ranks, so that rounding errors do not break ties.
     return _pairwise(np.round(rows, 12), _rank_measure(method))
 
 
 def correlation_between(
     rows: Array, others: Array, method: Literal["pearson", "spearman", "kendall"] = "pearson"
 ) -> Array:
-    """Correlation of every row with every other one, over the columns where both have a value.
+    """Correlation of each row with each other row, over the columns where both have a value.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def correlation_between(
     Returns
     -------
     (rows, others) float64
-        NaN where fewer than 3 alternatives have both or one of the two does not vary.
+        NaN if fewer than 3 alternatives have both values, or one of the rows is constant.
     """
     measure = _pearson if method == "pearson" else _rank_measure(method)
     found = [[_correlation(row, other, measure) for other in others] for row in rows]
@@ -73,14 +73,14 @@ def criteria_correlation(scores: Scores) -> Array:
     Returns
     -------
     (criteria, criteria) float64
-        Of the values as measured, over the repeats that succeeded, costs not inverted; NaN where
-        a criterion is constant.
+        Over the successful repeats, with measured values (costs are not inverted); NaN if a
+        criterion is constant.
     """
     return _pairwise(scores.means.T, _pearson)
 
 
 def _pearson(a: Array, b: Array) -> float:
-    # Scaled first: the products of very large or very small values are no longer numbers.
+    # Scaled first: products of very large or very small values would overflow or underflow.
     return float(np.corrcoef(a / np.abs(a).max(), b / np.abs(b).max())[0, 1])
 
 
@@ -96,7 +96,7 @@ def _pairwise(rows: Array, measure: Measure) -> Array:
 
 
 def _correlation(a: Array, b: Array, measure: Measure) -> float:
-    """NaN where fewer than 3 have both values or one of the two does not vary."""
+    """The measure; NaN if fewer than 3 columns have both values, or one row is constant."""
     both = ~np.isnan(a) & ~np.isnan(b)
     if both.sum() < FEWEST or np.ptp(a[both]) == 0 or np.ptp(b[both]) == 0:
         return float("nan")

@@ -1,4 +1,4 @@
-"""What alternatives are judged by: one row a criterion."""
+"""The criteria of alternatives: one row each."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class Criterion:
     ----------
     name : str
     better : {"higher", "lower"}
-        Direction: a benefit or a cost.
+        Benefit or cost.
     column : str
-        A column of the measurements, or a SQL expression of columns; the name by default.
+        A column of the measurements, or a SQL expression of columns; by default the name.
     reconstruction : bool
-        Whether it has one value an alternative, from a 3D reconstruction, not one a pair.
+        Whether it has one value per alternative (from a 3D model) in place of one per pair.
     description : str
     beyond_chance : bool
-        Whether it can be had only where shuffled matches were verified, too.
+        Whether it needs the test against chance, which also verifies shuffled matches.
     aspect : {"accuracy", "quantity", "speed", "other"}
-        What it tells of: objectives weigh these.
+        Aspect by which objectives distribute weights.
 
     Raises
     ------
     ScoreError
-        If it has no name, or the direction is none.
+        If it has no name, or an unknown direction.
     """
 
     name: str
@@ -49,10 +49,10 @@ class Criterion:
 
     def __post_init__(self) -> None:
         if not self.name:
-            raise ScoreError("a criterion has no name; give it one")
+            raise ScoreError("a criterion needs a name")
         if self.better not in DIRECTIONS:
             raise ScoreError(
-                f"criterion {self.name}: better is {self.better!r}; give 'higher' or 'lower'"
+                f"criterion {self.name}: better must be 'higher' or 'lower', got {self.better!r}"
             )
 
     @property
@@ -110,7 +110,7 @@ _BY_PAIRS: tuple[Criterion, ...] = (
     ),
     Criterion(
         "excess_inliers",
-        description="inliers beyond those that shuffled matches give",
+        description="inliers minus the inliers of shuffled matches",
         beyond_chance=True,
         aspect="quantity",
     ),
@@ -132,16 +132,18 @@ _BY_PAIRS: tuple[Criterion, ...] = (
         aspect="speed",
     ),
     Criterion("descriptor_bytes", "lower", description="bytes of one descriptor"),
-    Criterion("peak_memory_mb", "lower", description="largest rise of memory in one stage"),
+    Criterion("peak_memory_mb", "lower", description="largest increase of memory in one stage"),
 )
 
 _GROUND_TRUTH: tuple[Criterion, ...] = (
     *(
-        Criterion(f"gt_precision@{t}", description=f"share of matches right within {t} px")
+        Criterion(f"gt_precision@{t}", description=f"share of matches correct within {t} px")
         for t in (1, 3, 5)
     ),
     *(
-        Criterion(f"gt_matching_score@{t}", description=f"matches right within {t} px / keypoints")
+        Criterion(
+            f"gt_matching_score@{t}", description=f"matches correct within {t} px / keypoints"
+        )
         for t in (1, 3, 5)
     ),
     Criterion("gt_repeatability", description="covisible keypoints found again within 3 px"),
@@ -167,7 +169,7 @@ _RECONSTRUCTION: tuple[Criterion, ...] = (
         "reconstruction_seconds",
         "lower",
         reconstruction=True,
-        description="seconds that the reconstruction takes",
+        description="seconds of the reconstruction",
     ),
     Criterion(
         "registered_share",
@@ -178,13 +180,13 @@ _RECONSTRUCTION: tuple[Criterion, ...] = (
     Criterion(
         "mean_track_length",
         reconstruction=True,
-        description="images that see a 3D point, on average",
+        description="mean number of images per 3D point",
     ),
     Criterion(
         "position_error_share",
         "lower",
         reconstruction=True,
-        description="error of the camera positions / extent of the true ones",
+        description="error of the camera positions / extent of the true positions",
     ),
 )
 
@@ -198,12 +200,12 @@ def criteria_named(names: Iterable[str], known: Sequence[Criterion] = CRITERIA) 
     Raises
     ------
     ScoreError
-        If there is none, one is named twice, or one does not exist.
+        If none is named, one is named twice, or one does not exist.
     """
     by_name = {criterion.name: criterion for criterion in known}
     chosen = [name.strip() for name in names]
     if not chosen:
-        raise ScoreError("no criterion was chosen; name at least one")
+        raise ScoreError("name at least one criterion")
     for name in chosen:
         if name not in by_name:
             near = get_close_matches(name, by_name, n=3, cutoff=0.4) or list(by_name)[:3]

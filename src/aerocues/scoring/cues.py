@@ -25,13 +25,13 @@ class BatchScores:
     Attributes
     ----------
     scores : (batch, alternatives) float64
-        In [0, 1]; NaN for an alternative that lacks a criterion.
+        In [0, 1]; NaN for an alternative without a value in some criterion.
     by_method : (batch, methods, criteria) float64
         Weights by each method.
     weights : (batch, criteria) float64
-        Their aggregate.
+        Aggregated weights.
     normalised : (batch, alternatives, criteria) float64
-        What the scores are weighted sums of.
+        Values whose weighted sums are the scores.
     """
 
     scores: Array
@@ -49,15 +49,15 @@ class Scores:
     table : DecisionTable
     settings : ScoreSettings
     means : (alternatives, criteria) float64
-        Over the repeats with a value.
+        Means over the repeats with a value.
     normalised : (alternatives, criteria) float64
-        In [0, 1], 1 being the best, with the power alpha.
+        In [0, 1] (1 is the best), to the power alpha.
     by_method : (methods, criteria) float64
     weights : (criteria,) float64
     scores : (alternatives,) float64
-        NaN for an alternative that lacks a criterion.
+        NaN for an alternative without a value in some criterion.
     ranks : (alternatives,) float64
-        1 is the best; equal scores share the best rank; NaN where the score is.
+        1 is the best; ties share the best rank; NaN without a score.
     """
 
     table: DecisionTable
@@ -71,19 +71,19 @@ class Scores:
 
     @property
     def order(self) -> NDArray[np.int64]:
-        """Positions of the scored alternatives, the best first, those of equal score by name."""
+        """Indices of the scored alternatives, the best first; ties are sorted by name."""
         positions = [each for each in range(len(self.ranks)) if not np.isnan(self.ranks[each])]
         positions.sort(key=lambda each: (self.ranks[each], self.table.alternatives[each]))
         return np.array(positions, dtype=np.int64)
 
     @property
     def best(self) -> int:
-        """Position of the best alternative."""
+        """Index of the best alternative."""
         return int(self.order[0])
 
 
 def score_batch(means: Means, table: DecisionTable, settings: ScoreSettings) -> BatchScores:
-    """Score a batch of resamples, weights estimated anew in each."""
+    """Score a batch of resamples; weights are estimated anew in each."""
     normalised = normalise(means, table, settings.failures) ** settings.alpha
     by_method = weights_by_method(normalised, settings.weights)
     weights = aggregate(by_method, settings.aggregation)
@@ -96,9 +96,9 @@ def score_batch(means: Means, table: DecisionTable, settings: ScoreSettings) -> 
 
 
 def rank(scores: Array) -> Array:
-    """Ranks along the last axis: 1 for the highest, equal scores share the best, NaN stays.
+    """Ranks along the last axis: 1 for the highest, ties share the best rank, NaN stays NaN.
 
-    Scores that differ by less than rounding can produce (1e-12) are equal.
+    Scores are rounded to 12 digits first, so that rounding errors do not break ties.
     """
     values = -np.round(np.asarray(scores, np.float64), DIGITS)
     order = np.argsort(values, axis=-1, kind="stable")  # NaN come last
@@ -138,8 +138,8 @@ def score(table: DecisionTable, settings: ScoreSettings | None = None) -> Scores
     batch = score_batch(means, table, settings)
     if np.isnan(batch.scores).all():
         raise ScoreError(
-            "no alternative has a value in every criterion; choose fewer criteria or let failures "
-            "count as the worst"
+            "no alternative has a value in every criterion; choose fewer criteria, or count "
+            "failures as the worst"
         )
     return Scores(
         table=table,

@@ -18,23 +18,23 @@ LEVEL = 0.05
 
 @dataclass(frozen=True)
 class CriticalDifference:
-    """What a critical-difference diagram shows.
+    """The content of a critical-difference diagram.
 
     Attributes
     ----------
     alternatives : tuple of str
-        By mean rank, the best first.
+        Sorted by mean rank, the best first.
     mean_ranks : (alternatives,) float64
     units : int
-        Number of independent repeats or blocks ranked in.
+        Number of independent repeats or blocks.
     chi_square, p_value : float
-        Friedman's statistic and its probability if all were alike.
+        Friedman's statistic and p-value.
     f_statistic, f_p_value : float
-        Iman and Davenport's, less cautious.
+        Iman and Davenport's, which is less conservative.
     critical_difference : float
-        Nemenyi's, of two mean ranks.
+        Nemenyi's critical difference of two mean ranks.
     groups : tuple of (int, int)
-        First and last position of each largest run of alternatives that cannot be told apart.
+        First and last index of each maximal group without significant differences.
     """
 
     alternatives: tuple[str, ...]
@@ -53,13 +53,13 @@ def critical_difference(
 ) -> CriticalDifference:
     """Compare the mean ranks of a shortlist over the repeats (or blocks) of a table.
 
-    Only units in which all of the shortlist were measured count.
+    Only units in which the whole shortlist was measured are used.
 
     Parameters
     ----------
     scores : Scores
     shortlist : sequence of int
-        Positions of 2 alternatives or more.
+        Indices of at least 2 alternatives.
     level : float
 
     Raises
@@ -78,7 +78,7 @@ def critical_difference(
 
 
 def friedman(values: Array, names: Sequence[str], level: float = LEVEL) -> CriticalDifference:
-    """Friedman's test on a table, higher values being better.
+    """Friedman's test on a table; higher values are better.
 
     Parameters
     ----------
@@ -96,12 +96,11 @@ def friedman(values: Array, names: Sequence[str], level: float = LEVEL) -> Criti
     number, units = values.shape
     if number < 2 or units < 2:
         raise ScoreError(
-            f"alternatives: {number}, repeats: {units}; to rank them against each other, take 2 "
-            "or more of each"
+            f"Friedman's test needs at least 2 alternatives and 2 repeats, got {number} and {units}"
         )
     ranks = rankdata(-values, axis=0)
     mean_ranks = ranks.mean(axis=1)
-    # With ties, the ranks vary less than 1, 2, .., k would.
+    # Correction for ties: tied ranks vary less than 1, 2, .., k.
     spread = ((ranks - (number + 1) / 2) ** 2).sum() / (units * (number - 1))
     distance = units * ((mean_ranks - (number + 1) / 2) ** 2).sum()
     chi_square = float(distance / spread) if spread > 0 else 0.0

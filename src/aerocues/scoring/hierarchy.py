@@ -1,4 +1,4 @@
-"""Scores by component: what each detector, descriptor, norm or matcher is worth on average."""
+"""Mean scores of each detector, descriptor, norm and matcher."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def hierarchy(scores: Scores) -> dict[str, pl.DataFrame]:
     Returns
     -------
     dict of pl.DataFrame
-        For each, one row a label, the best mean first: ``name, mean, max,
+        For each set, one row per label, the best mean first: ``name, mean, max,
         standard_deviation, alternatives, evaluations`` (alternatives x repeats measured) and
         ``best`` (the best alternative).
     """

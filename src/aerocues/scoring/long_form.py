@@ -1,4 +1,4 @@
-"""Reads a frame with one row an alternative and repeat."""
+"""Reads a table with one row per alternative and repeat."""
 
 from __future__ import annotations
 
@@ -23,21 +23,23 @@ def read_long_form(
 ) -> dict[str, Any]:
     """The fields of a `DecisionTable`; see `DecisionTable.from_frame`."""
     if not criteria:
-        raise ScoreError("there is no criterion; name at least one")
+        raise ScoreError("name at least one criterion")
     if frame.is_empty():
-        raise ScoreError("the table has no row; there is nothing to score")
+        raise ScoreError("the table has no row, so there is nothing to score")
     keys = {"alternative": alternative, "repeat": repeat, "block": block}
     for name in filter(None, keys.values()):
         if name not in frame.columns:
             raise ScoreError(f"there is no column {name!r}; the table has {_columns(frame)}")
         if frame[name].dtype.is_nested():
-            raise ScoreError(f"the column {name!r} holds {frame[name].dtype}; give plain names")
+            raise ScoreError(
+                f"column {name!r} has the type {frame[name].dtype}; it must have names"
+            )
     labels = frame.select(
         (pl.col(name) if name else pl.lit(ALL)).cast(pl.String).alias(key)
         for key, name in keys.items()
     )
     if labels.null_count().sum_horizontal().item():
-        raise ScoreError("a row has no name of its alternative, repeat or block; fill it in")
+        raise ScoreError("a row has no alternative, repeat or block; fill in the missing names")
     twice = labels.filter(labels.select("alternative", "repeat").is_duplicated())
     if len(twice):
         row = twice.row(0, named=True)
@@ -65,7 +67,7 @@ def _columns(frame: pl.DataFrame) -> str:
 
 
 def _in_order(labels: pl.Series) -> tuple[tuple[str, ...], Any]:
-    """Distinct labels as they first appear, and the position of each row's."""
+    """Distinct labels in the order of appearance, and the index of each row's label."""
     distinct = labels.unique(maintain_order=True).to_list()
     position = {label: number for number, label in enumerate(distinct)}
     return tuple(distinct), np.array([position[label] for label in labels])
@@ -78,27 +80,27 @@ def _blocks(labels: pl.DataFrame, repeats: tuple[str, ...], columns: Any) -> Any
     torn = np.flatnonzero(blocks[columns] != numbers)
     if len(torn):
         raise ScoreError(
-            f"repeat {repeats[columns[torn[0]]]!r} belongs to two blocks; each belongs to one"
+            f"repeat {repeats[columns[torn[0]]]!r} is in two blocks; each must be in one"
         )
     return blocks
 
 
 def _numbers(frame: pl.DataFrame, criteria: Sequence[Criterion]) -> Any:
-    """(rows, criteria) float64; NaN where a row has no number."""
+    """(rows, criteria) float64; NaN where a row has no value."""
     columns = []
     for criterion in criteria:
         values = values_of(frame, criterion)
         if not (values.dtype.is_numeric() or values.dtype in (pl.Boolean, pl.Null)):
             raise ScoreError(
-                f"criterion {criterion.name} holds {values.dtype}, not numbers; clean the column "
-                f"{criterion.source!r}"
+                f"criterion {criterion.name} has the type {values.dtype}, not numbers; clean the "
+                f"column {criterion.source!r}"
             )
         columns.append(values.cast(pl.Float64).fill_null(float("nan")).to_numpy())
     return np.stack(columns, axis=1)
 
 
 def values_of(frame: pl.DataFrame, criterion: Criterion) -> pl.Series:
-    """The values of a criterion, one a row; ScoreError where a column that it needs is missing."""
+    """The values of a criterion, one per row; ScoreError if a column is missing."""
     if criterion.source in frame.columns:
         return frame[criterion.source]
     try:
@@ -106,6 +108,6 @@ def values_of(frame: pl.DataFrame, criterion: Criterion) -> pl.Series:
     except pl.exceptions.PolarsError as error:
         raise ScoreError(
             f"criterion {criterion.name} needs {criterion.source!r}, which the table does not "
-            f"give; it has {_columns(frame)}"
+            f"have; its columns are {_columns(frame)}"
         ) from error
     return values if len(values) == len(frame) else pl.repeat(values[0], len(frame), eager=True)

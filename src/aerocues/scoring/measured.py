@@ -23,25 +23,25 @@ from aerocues.scoring.table import DecisionTable
 if TYPE_CHECKING:
     import polars as pl
 
-# Where fewer were reconstructed, they are a choice of the user's, and the others keep their score.
+# If fewer are reconstructed, they are a selection by the user, and the others keep their score.
 ENOUGH_RECONSTRUCTED = 0.5
 
 
 class Measured(Protocol):
-    """What is asked of results."""
+    """Results that can be scored."""
 
     def table(self) -> pl.DataFrame:
         """Rows of image pairs."""
         ...
 
     def reconstructions(self) -> pl.DataFrame:
-        """Rows of reconstructions; none where there are none."""
+        """Rows of reconstructions; may be empty."""
         ...
 
 
 @dataclass(frozen=True)
 class MeasuredRows:
-    """Rows that were read already, with the reconstructions that belong to them."""
+    """Rows in memory, with their reconstructions."""
 
     rows: pl.DataFrame
     models: pl.DataFrame
@@ -62,11 +62,11 @@ class MeasuredTable:
     dataset : str
     table : DecisionTable
     preset : ScorePreset
-        What its criteria were chosen by.
+        Preset that the criteria come from.
     seconds : mapping of str to float
-        Median time of each combination for an image and a pair, where it is known.
+        Median time of each combination for an image and a pair, if known.
     machines : tuple of str
-        The kinds of machine that measured, where that is known.
+        Kinds of machine that measured, if known.
     """
 
     dataset: str
@@ -82,7 +82,7 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
     Raises
     ------
     ScoreError
-        If there is no such dataset, or several and none was named.
+        If there is no such dataset, or there are several and none is named.
     """
     import polars as pl
 
@@ -97,7 +97,7 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
 
 
 def settings_from(preset: ScorePreset, **changes: object) -> ScoreSettings:
-    """Settings of a preset, with what is not None in their place."""
+    """Settings of a preset, replaced by the changes that are not None."""
     given = {name: value for name, value in changes.items() if value is not None}
     return replace(preset.settings, **given)  # type: ignore[arg-type]
 
@@ -121,10 +121,10 @@ def table_of(
     criteria : sequence of str, optional
         In place of the preset's.
     dataset : str, optional
-        Needed where there are several.
+        Needed if there are several.
     reconstruction : bool, optional
-        Whether to add the preset's criteria of reconstruction; by default, where most
-        combinations were reconstructed.
+        Whether to add the preset's criteria of reconstruction; by default if most combinations
+        were reconstructed.
 
     Raises
     ------
@@ -153,21 +153,21 @@ def table_of(
 
 
 def _refuse_failure(rows: pl.DataFrame, preset: ScorePreset) -> None:
-    """Say so where nothing succeeded, rather than that there are no values."""
+    """Raise a clear error if nothing succeeded, before scoring fails for lack of values."""
     statuses = dict(rows["status"].value_counts(sort=True, name="rows").iter_rows())
     if "ok" in statuses or ("chance" in statuses and not preset.chance_fails):
         return
     told = ", ".join(f"{status} {number:,}" for status, number in statuses.items())
     raise ScoreError(
-        f"nothing succeeded on {rows['dataset'][0]} ({told}), so that there is nothing to rank; "
+        f"nothing succeeded on {rows['dataset'][0]} ({told}), so there is nothing to rank; "
         "'aerocues status' tells why: try larger images (--max-width), other pairs or combinations"
     )
 
 
 def _enough_models(rows: pl.DataFrame, models: pl.DataFrame) -> bool:
-    """Whether most combinations were reconstructed, one of them at least with success.
+    """Whether most combinations were reconstructed, and at least one successfully.
 
-    Where all models failed, they tell combinations apart no more than if there were none.
+    If all models failed, they do not distinguish the combinations.
     """
     measured = rows.select(METHODS).unique()
     share = measured.join(models, on=METHODS, how="semi").height / measured.height
@@ -212,14 +212,14 @@ def score(
     results : Measured
         Such as `aerocues.Results`.
     preset : str, optional
-        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; the
-        one that suits the measurements by default.
+        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; by
+        default the one that suits the measurements.
     criteria : sequence of str, optional
         Names of rows of `criteria.CRITERIA`, in place of the preset's.
     dataset : str, optional
-        Needed where there are several.
+        Needed if there are several.
     reconstruction : bool, optional
-        Whether to add the criteria of reconstruction; by default, where most combinations were
+        Whether to add the criteria of reconstruction; by default if most combinations were
         reconstructed.
     settings : ScoreSettings, optional
         In place of the preset's.

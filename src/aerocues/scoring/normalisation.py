@@ -1,4 +1,4 @@
-"""From measured values to comparable ones: bounds, means and min-max normalisation."""
+"""Makes measured values comparable: bounds, means and min-max normalisation."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Means:
     Attributes
     ----------
     mean : (batch, alternatives, criteria) float64
-        Over the valid repeats; NaN where there is none.
+        Mean over the valid repeats; NaN if there is none.
     valid, failed : (batch, alternatives, criteria) float64
-        Number of repeats.
+        Numbers of repeats.
     low, high : (batch, criteria) float64
-        Smallest and largest value of all repeats of all alternatives.
+        Smallest and largest value over all repeats of all alternatives.
     """
 
     mean: Array
@@ -36,7 +36,7 @@ class Means:
 
 
 class Sums:
-    """A table laid out so that the means of many resamples are matrix products.
+    """A table arranged so that the means of many resamples are matrix products.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ class Sums:
         Parameters
         ----------
         counts : (batch, repeats) float64
-            How often each repeat was drawn.
+            Number of times each repeat was drawn.
         bounds : pair of (1, criteria) float64, optional
-            Smallest and largest values to go by; by default those of the repeats drawn.
+            Smallest and largest values; by default those of the drawn repeats.
         """
         shape = (len(counts), *self._shape)
         valid = (counts @ self._valid).reshape(shape)
@@ -86,7 +86,7 @@ class Sums:
 
 
 def plain_means(table: DecisionTable) -> Means:
-    """Means over all repeats, each counted once: what `Sums` gives without laying the table out."""
+    """Means over all repeats, each counted once; as `Sums`, without rearranging the table."""
     missing = np.isnan(table.values)
     valid = np.count_nonzero(~missing, axis=1).astype(np.float64)
     total = np.where(missing, 0, table.values).sum(axis=1)
@@ -101,23 +101,23 @@ def plain_means(table: DecisionTable) -> Means:
 
 
 def normalise(means: Means, table: DecisionTable, failures: Failures) -> Array:
-    """Bring all criteria into [0, 1], 1 being the best.
+    """Normalise all criteria to [0, 1]; 1 is the best.
 
-    A value equal for all alternatives and repeats is 1: none is worse than the best. A failed
-    repeat counts as 0 or not at all. As normalisation is linear, the mean over valid and failed
-    repeats is that over the valid ones times their share.
+    A criterion with equal values for all alternatives and repeats is 1: no alternative is worse
+    than the best. A failed repeat counts as 0 or is left out. As the normalisation is linear, the
+    mean over valid and failed repeats is the mean over the valid ones times their share.
 
     Returns
     -------
     (batch, alternatives, criteria) float64
-        NaN in all criteria of an alternative that lacks one of them.
+        NaN in all criteria of an alternative without a value in one of them.
     """
     width = (means.high - means.low)[:, None, :]
     offset = means.mean - means.low[:, None, :]
     known = np.isfinite(width) & (width > 0)
     z = np.divide(offset, width, out=np.zeros_like(offset), where=known)
     z = np.where(table.is_cost, 1 - z, z).clip(0, 1)
-    # A power below 1 would blow up what rounding of a mean leaves of 0: 1e-16 ** 0.1 = 0.025.
+    # A power below 1 would amplify the rounding error of a mean of 0: 1e-16 ** 0.1 = 0.025.
     largest = np.maximum(np.abs(means.low), np.abs(means.high))[:, None, :]
     z[z * np.where(known, width, 1) < ROUNDING * np.where(known, largest, 0)] = 0
     z = np.where(known, z, 1)

@@ -1,4 +1,4 @@
-"""What a choice is to serve: one row an objective, each with a definition."""
+"""Objectives for choosing a combination: one row each, with a definition."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ TIME = "total_seconds"
 
 @dataclass(frozen=True)
 class Objective:
-    """What the best combination is best for.
+    """A purpose, and the score that it maximises.
 
     Attributes
     ----------
     name, title : str
     definition : str
-        How the score comes about, in words.
+        The score in words.
     shares : mapping of aspect to float
-        Share of the weight of all criteria that those of an aspect get together, divided among
-        them as estimated; none: all weights as estimated.
+        Total weight of the criteria of each aspect; within an aspect, it is divided in proportion
+        to the estimated weights. Empty: all weights as estimated.
     time_power : float
         The score is multiplied by (least seconds / seconds) to this power.
     worst : float
-        Share of the blocks (scenes, sequences; pairs, where there is one) over which the score is
-        averaged: those where an alternative does worst. 1: all pairs alike.
+        Share of the blocks (scenes or sequences; pairs if there is one block) over which the score
+        is averaged: those with an alternative's lowest scores. 1: all pairs.
     """
 
     name: str
@@ -43,11 +43,11 @@ class Objective:
     worst: float = 1.0
 
     def criteria(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Names of the criteria that are needed: those given, and the time where it counts."""
+        """Names of the needed criteria: the given ones, and the time if it counts."""
         return (*names, TIME) if self.time_power and TIME not in names else tuple(names)
 
     def weights(self, estimated: Array, criteria: Sequence[Criterion]) -> Array:
-        """(C,) weights of the criteria, from those that were estimated."""
+        """(C,) weights of the criteria, from the estimated weights."""
         if not self.shares:
             return estimated
         weights = np.zeros_like(estimated)
@@ -59,18 +59,18 @@ class Objective:
         whole = weights.sum()
         if not whole:
             raise ScoreError(
-                f"the objective {self.name} weighs {', '.join(self.shares)}, of which there is no "
-                "criterion; choose balanced"
+                f"the objective {self.name} needs criteria of {', '.join(self.shares)}; there are "
+                "none: choose the objective balanced"
             )
         return np.asarray(weights / whole)
 
     def hurry(self, seconds: Array) -> Array:
-        """(A,) factors of the scores of alternatives that take so long."""
+        """(A,) factors that multiply the scores, from the seconds of the alternatives."""
         known = np.maximum(seconds, 1e-9)
         return np.asarray((known.min() / known) ** self.time_power)
 
     def over_blocks(self, scores: Array) -> Array:
-        """(A,) from scores (A, B) in each block."""
+        """(A,) scores from the scores (A, B) in each block."""
         count = max(math.ceil(self.worst * scores.shape[1]), 1)
         return np.asarray(np.sort(scores, axis=1)[:, :count].mean(axis=1))
 
@@ -80,38 +80,38 @@ OBJECTIVES: dict[str, Objective] = {
     for objective in (
         Objective(
             "balanced",
-            "quality and speed in balance",
-            "CUES as 'aerocues score' gives it, with weights estimated from the measurements "
-            "(the thesis: maximum efficiency)",
+            "balance of quality and speed",
+            "CUES as in 'aerocues score', with weights estimated from the measurements (in the "
+            "thesis: maximum efficiency)",
         ),
         Objective(
             "speed",
-            "boards and phones: good, and soon done",
-            "CUES of accuracy (half the weight) and quantity (half), times the fourth root of "
-            "least seconds / seconds: to take 16 times as long, it must be twice as good (the "
-            "thesis: mobile)",
+            "boards and phones: fast",
+            "CUES of accuracy (half of the weight) and quantity (half), times the fourth root of "
+            "least seconds / seconds: a combination that takes 16 times as long must be twice as "
+            "good (in the thesis: mobile)",
             shares={"accuracy": 0.5, "quantity": 0.5},
             time_power=0.25,
         ),
         Objective(
             "accuracy",
-            "right matches first",
+            "correct matches",
             "CUES with 80 % of the weight on shares (recall, precision, repeatability, F1), 20 % "
-            "on counts, none on time (the thesis: accuracy first)",
+            "on counts and none on time (in the thesis: accuracy first)",
             shares={"accuracy": 0.8, "quantity": 0.2},
         ),
         Objective(
             "reconstruction",
             "3D models with many points",
-            "CUES with 60 % of the weight on counts (inliers, matches), 40 % on shares, none on "
-            "time",
+            "CUES with 60 % of the weight on counts (inliers, matches), 40 % on shares and none "
+            "on time",
             shares={"accuracy": 0.4, "quantity": 0.6},
         ),
         Objective(
             "robust",
             "unknown conditions",
-            "CUES on the quarter of the scenes (of the pairs, where there is one scene) where a "
-            "combination does worst (the thesis: unknown conditions)",
+            "CUES on a combination's worst quarter of the scenes (of the pairs, if there is one "
+            "scene; in the thesis: unknown conditions)",
             worst=0.25,
         ),
     )
@@ -119,7 +119,7 @@ OBJECTIVES: dict[str, Objective] = {
 
 
 def objective_named(name: str) -> Objective:
-    """The objective of this name; ScoreError where there is none."""
+    """The objective of this name; ScoreError if there is none."""
     if name not in OBJECTIVES:
         raise ScoreError(f"there is no objective {name!r}; choose from {', '.join(OBJECTIVES)}")
     return OBJECTIVES[name]

@@ -1,4 +1,4 @@
-"""Relates figures of image pairs to what became of the 3D reconstructions."""
+"""Correlates figures of image pairs with figures of the 3D reconstructions."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 SUCCESS_RATE = "success_rate"
-# Criteria of pairs whose means are related, those that the measurements have; of several
-# thresholds of the ground truth the middle one, as they say nearly the same.
+# Criteria of pairs whose means are correlated, if measured. Of several ground-truth thresholds only
+# the middle one: the others are almost redundant.
 FEATURES = (
     "inliers",
     "matches",
@@ -48,10 +48,10 @@ FEATURES = (
     "homography_auc@3",
     "pose_auc@10",
 )
-# Three models are in the same order, or in the opposite one, as any figure of pairs in one case of
-# three, and four in one of twelve: among dozens of coefficients, some are then exactly 1 by luck.
+# With three models, a random figure has a rank correlation of exactly 1 or -1 in one of three
+# cases, with four in one of twelve: among dozens of coefficients, some would be 1 by chance.
 FEWEST_MODELS = 5
-# How a reconstruction ends that holds no image. Where a program failed, nothing is known.
+# Reconstructions that ended without any image. Where a program failed, the outcome is unknown.
 WITHOUT_MODEL = ("no_features", "no_verified_pair", "no_initial_pair", "no_model")
 
 
@@ -64,10 +64,10 @@ class Outcome:
     name : str
     better : {"higher", "lower"}
     of_model : bool
-        Whether it describes a model, so that only reconstructions that succeeded have it: broken
-        models have few points and a low reprojection error.
+        Whether it describes a model. Then only successful reconstructions count: broken models
+        have few points and a low reprojection error.
     to_reference : bool
-        Whether it is a distance to a reference, which has none to itself.
+        Whether it is a distance to a reference; the reference itself has none.
     """
 
     name: str
@@ -93,23 +93,23 @@ OUTCOMES: tuple[Outcome, ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Relations:
-    """Correlations of figures of pairs with outcomes of reconstructions, over combinations.
+    """Correlations over the combinations of figures of pairs with outcomes of reconstructions.
 
     Attributes
     ----------
     dataset : str
     combinations : tuple of str
-        Measured and reconstructed.
+        Combinations that were measured and reconstructed.
     features, outcomes : tuple of str
-        Those that vary.
+        Figures that vary.
     feature_values : (combinations, features) float64
-        Means over the pairs that succeeded, and the share of those; NaN where there is none.
+        Means over the successful pairs, and the share of these pairs; NaN if unknown.
     outcome_values : (combinations, outcomes) float64
-        NaN where it is not known, or describes a model that is no success.
+        NaN if unknown, or if it describes a model that did not succeed.
     pearson, spearman : (features, outcomes) float64
-        NaN where fewer than `FEWEST_MODELS` combinations have both.
+        NaN if fewer than `FEWEST_MODELS` combinations have both.
     numbers : (features, outcomes) int64
-        Combinations behind each of them.
+        Number of combinations behind each coefficient.
     """
 
     dataset: str
@@ -123,7 +123,7 @@ class Relations:
     numbers: NDArray[np.int64]
 
     def frame(self) -> pl.DataFrame:
-        """One row a feature and outcome: ``feature, outcome, combinations, pearson, spearman``."""
+        """One row per pair: ``feature, outcome, combinations, pearson, spearman``."""
         import polars as pl
 
         rows, columns = len(self.features), len(self.outcomes)
@@ -142,10 +142,10 @@ class Relations:
 def relate_outcomes(
     results: Measured, preset: str | None = None, *, dataset: str | None = None
 ) -> Relations:
-    """Tell what figures of image pairs say about reconstructions, over the combinations.
+    """Correlate figures of image pairs with figures of reconstructions, over the combinations.
 
-    Figures that describe a model (3D points, errors, distances) are taken over the combinations
-    whose reconstruction succeeded, the number of registered images over all.
+    Figures that describe a model (3D points, errors, distances) count for the combinations whose
+    reconstruction succeeded; the number of registered images counts for all.
 
     Parameters
     ----------
@@ -154,13 +154,13 @@ def relate_outcomes(
     preset : str, optional
         A row of `settings.SCORE_PRESETS`: whether pairs that do not beat chance have failed.
     dataset : str, optional
-        Needed where there are several.
+        Needed if there are several.
 
     Raises
     ------
     ScoreError
-        If fewer than `FEWEST_MODELS` combinations were both measured and reconstructed, or nothing
-        varies over as many.
+        If fewer than `FEWEST_MODELS` combinations were both measured and reconstructed, or no
+        figure varies over them.
     """
     import polars as pl
 
@@ -179,15 +179,15 @@ def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
     joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
     if len(joined) < FEWEST_MODELS:
         raise ScoreError(
-            f"{len(joined)} combinations were both measured and reconstructed, too few to tell "
-            f"what figures of pairs say of models; make {FEWEST_MODELS} or more with "
+            f"{len(joined)} combinations were both measured and reconstructed, too few for "
+            f"correlations of pairs and models; make {FEWEST_MODELS} or more with "
             "'aerocues reconstruct'"
         )
     return _related(rows["dataset"][0], joined, features.columns[1:])
 
 
 def _features(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
-    """Means of each combination over its pairs that succeeded, and the share of those."""
+    """Means of each combination over its successful pairs, and the share of these pairs."""
     import polars as pl
 
     success = pl.col("status").is_in(SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST)
@@ -211,7 +211,7 @@ def _features(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
 
 
 def _outcomes(models: pl.DataFrame) -> pl.DataFrame:
-    """The outcomes of each combination, null where they say nothing."""
+    """The outcomes of each combination; null if unknown."""
     return models.select(
         COMBINATION, *(_outcome(models, outcome).alias(outcome.name) for outcome in OUTCOMES)
     )
@@ -263,13 +263,13 @@ def _related(dataset: str, joined: pl.DataFrame, features: Sequence[str]) -> Rel
 
 def _nothing_varies() -> ScoreError:
     return ScoreError(
-        f"nothing varies over {FEWEST_MODELS} or more models that can be compared; reconstruct "
-        "with other combinations, too"
+        f"no figure varies over {FEWEST_MODELS} or more comparable models; reconstruct with more "
+        "combinations"
     )
 
 
 def _varying(table: pl.DataFrame, names: Sequence[str]) -> list[str]:
-    """The columns with values for enough models that are not all the same."""
+    """The columns that vary, with values for enough models."""
 
     def known(name: str) -> Iterator[float]:
         return (value for value in table[name].drop_nulls() if np.isfinite(value))

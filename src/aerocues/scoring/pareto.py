@@ -1,4 +1,4 @@
-"""Alternatives that no other one beats in two respects at once."""
+"""The Pareto front: alternatives that no other one dominates."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from aerocues.scoring.cues import Scores
 
 
 def pareto_front(values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points no other one dominates.
+    """The points that no other point dominates.
 
     Parameters
     ----------
     values : (alternatives, criteria) float64
-        Higher is better; a point with NaN takes no part.
+        Higher is better; points with NaN are excluded.
 
     Returns
     -------
@@ -31,10 +31,10 @@ def pareto_front(values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def pareto_of_criteria(scores: Scores, first: str, second: str) -> NDArray[np.int64]:
-    """Positions on the Pareto front of two criteria, by the first, best first.
+    """Indices of the alternatives on the Pareto front of two criteria, sorted by the first.
 
-    It goes by the normalised values, in which failures count as the settings say: a combination
-    that is good on the few pairs it does not fail on is not on the front for that.
+    The front uses normalised values, in which failures count as the settings say: a combination
+    that fails on most pairs is not on the front for its few good ones.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def pareto_of_criteria(scores: Scores, first: str, second: str) -> NDArray[np.in
     names = scores.table.criterion_names
     for name in (first, second):
         if name not in names:
-            raise ScoreError(f"there is no criterion {name!r} here; choose from {', '.join(names)}")
+            raise ScoreError(f"the table has no criterion {name!r}; choose from {', '.join(names)}")
     chosen = [names.index(first), names.index(second)]
     values = scores.normalised[:, chosen]
     positions = np.flatnonzero(pareto_front(values))

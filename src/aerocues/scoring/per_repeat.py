@@ -1,4 +1,4 @@
-"""The score of each single repeat, and what follows from it: the thesis's interval."""
+"""Scores of single repeats, and the interval of the thesis."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ BATCH = 64
 
 
 def scores_of_repeats(scores: Scores) -> Array:
-    """Score every repeat by itself, with the bounds and weights of the whole table.
+    """Score every repeat separately, with the bounds and weights of the whole table.
 
     Returns
     -------
     (alternatives, repeats) float64
-        NaN where an alternative was not measured, or failed and failures are left out. Because
-        of the power alpha, the mean of a row is not the score of the alternative.
+        NaN if an alternative was not measured, or failed and failures are left out. Because of the
+        power alpha, the mean of a row is not the score of the alternative.
     """
     table, settings = scores.table, scores.settings
     sums, number = Sums(table), len(table.repeats)
@@ -41,7 +41,7 @@ def scores_of_units(scores: Scores) -> Array:
     Returns
     -------
     (alternatives, units) float64
-        NaN where an alternative has no scored repeat in a unit.
+        NaN if an alternative has no scored repeat in a unit.
     """
     values = scores_of_repeats(scores)
     units = independent_units(scores.table)
@@ -56,10 +56,10 @@ def scores_of_units(scores: Scores) -> Array:
 def interval_of_repeats(
     scores: Scores, resamples: int = RESAMPLES, seed: int = 0, confidence: float = CONFIDENCE
 ) -> tuple[Array, Array]:
-    """The thesis's interval: bootstrap of the mean of the scores of single repeats.
+    """The interval of the thesis: bootstrap of the mean score of single repeats.
 
-    Each alternative's repeats are drawn by themselves, bounds and weights being held fixed, so
-    that intervals of two alternatives say little about their difference.
+    Repeats are drawn separately for each alternative, with fixed bounds and weights. Therefore two
+    intervals say little about the difference of two alternatives.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def interval_of_repeats(
         known = row[~np.isnan(row)]
         if not len(known):
             continue
-        # A generator an alternative: its interval does not depend on what else is in the table.
+        # One generator per alternative: its interval does not depend on the other alternatives.
         generator = np.random.default_rng(seed)
         drawn = generator.integers(len(known), size=(resamples, len(known)))
         result[:, position] = np.quantile(known[drawn].mean(axis=1), [tail, 1 - tail])

@@ -1,4 +1,4 @@
-"""The same data set measured on two machines: what changes, and by how much time."""
+"""Compares times of the same dataset on two machines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MEASURED = ("ok", "chance")
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage, the columns whose sum is its time, and the methods that decide how long it takes."""
+    """A stage, the columns whose sum is its time, and the methods that the time depends on."""
 
     name: str
     columns: tuple[str, ...]
@@ -35,8 +35,7 @@ STAGES: tuple[Stage, ...] = (
 def compare_times(first: pl.DataFrame, second: pl.DataFrame) -> pl.DataFrame:
     """Compare the times of the same combinations on the same pairs.
 
-    Quality ought not to depend on the machine; times do, and by more for some stages than for
-    others.
+    Quality should not depend on the machine. Times do, and some stages more than others.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ def compare_times(first: pl.DataFrame, second: pl.DataFrame) -> pl.DataFrame:
     Returns
     -------
     pl.DataFrame
-        One row a stage that both measured: ``stage``; ``rows`` (measured on both);
+        One row per stage measured on both: ``stage``; ``rows`` (measured on both);
         ``first_seconds, second_seconds`` (medians); ``ratio`` of second to first (geometric mean
         over the rows) with ``ratio_low, ratio_high`` (5th and 95th percentile of the rows); and
         ``rank_correlation`` (Spearman, of the combinations' mean times).
@@ -54,13 +53,13 @@ def compare_times(first: pl.DataFrame, second: pl.DataFrame) -> pl.DataFrame:
     Raises
     ------
     ScoreError
-        If no stage was measured on both machines for the same rows.
+        If no stage was measured for the same rows on both machines.
     """
     joined = _of_success(first).join(_of_success(second), on=KEY, suffix="_of_second")
     stages = [row for stage in STAGES if (row := _compare_stage(joined, stage)) is not None]
     if not stages:
         raise ScoreError(
-            "the two results share no row with times; measure the same data set with the same "
+            "the two results share no row with times; measure the same dataset with the same "
             "combinations on both machines"
         )
     return pl.DataFrame(stages)
@@ -101,7 +100,7 @@ def _compare_stage(joined: pl.DataFrame, stage: Stage) -> dict[str, object] | No
 
 
 def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[str, float]]:
-    """How many times as long each stage takes on the second machine, method by method.
+    """Time ratio of the second machine to the first, for each stage and method.
 
     Parameters
     ----------
@@ -112,12 +111,12 @@ def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[
     -------
     dict
         By stage (``detect, describe, match, verify``), then by detector, descriptor, or norm and
-        matcher (``L2-BF``); ``*`` stands for all. Geometric means of the ratios of the same rows.
+        matcher (``L2-BF``); ``*`` stands for all. Geometric means over the same rows.
 
     Raises
     ------
     ScoreError
-        If some stage was not measured on both machines for the same rows.
+        If a stage was not measured for the same rows on both machines.
     """
     joined = _of_success(first).join(_of_success(second), on=KEY, suffix="_of_second")
     factors: dict[str, dict[str, float]] = {}
@@ -125,8 +124,8 @@ def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[
         columns = [*stage.columns, *(f"{name}_of_second" for name in stage.columns)]
         if joined.is_empty() or not set(columns) <= set(joined.columns):
             raise ScoreError(
-                f"the two results share no row with times to {stage.name}; measure the same data "
-                "set with the same combinations on both machines"
+                f"the two results share no row with times of the stage {stage.name}; measure the "
+                "same dataset with the same combinations on both machines"
             )
         here = pl.sum_horizontal(pl.col(stage.columns), ignore_nulls=False)
         there = pl.sum_horizontal(

@@ -1,4 +1,4 @@
-"""How far ranks move when some of the alternatives had never been there."""
+"""Rank reversal: how far ranks move when some alternatives are removed."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ ROUNDS = 100
 
 @dataclass(frozen=True)
 class RankReversal:
-    """Ranks of those that remain, against their order in the whole table.
+    """Ranks of the remaining alternatives against their order in the whole table.
 
     Attributes
     ----------
     share : float
-        Of the alternatives, dropped in each round.
+        Share of the alternatives that is removed in each round.
     rounds : int
-        Those in which the alternatives that remain could be scored.
+        Rounds in which the remaining alternatives could be scored.
     mean_shift, largest_shift : float
-        Places by which ranks moved: the mean over rounds and alternatives, and the most.
+        Change of rank: the mean over rounds and alternatives, and the largest.
     spearman_mean, spearman_lowest : float
-        Rank correlation with the order in the whole table; NaN where it is not defined.
+        Rank correlation with the order in the whole table; NaN if undefined.
     best_kept : float
-        Share of the rounds in which the best of those that remain stayed the best.
+        Share of the rounds in which the best remaining alternative stayed the best.
     """
 
     share: float
@@ -46,17 +46,17 @@ class RankReversal:
 def rank_reversal(
     scores: Scores, share: float = SHARE, rounds: int = ROUNDS, seed: int = 0
 ) -> RankReversal:
-    """Drop a share of the alternatives at random, score the others anew, and see what moves.
+    """Remove random alternatives, score the others anew, and measure how ranks move.
 
-    Of a handful of alternatives, one is dropped at least; a single one cannot be.
+    At least one alternative is removed and at least one remains.
 
     Parameters
     ----------
     scores : Scores
     share : float
-        Of the alternatives, between 0 and 1.
+        Share of the alternatives to remove, between 0 and 1.
     rounds : int
-        1 or more.
+        At least 1.
     seed : int
 
     Raises
@@ -66,8 +66,7 @@ def rank_reversal(
     """
     if not 0 < share < 1 or rounds < 1:
         raise ScoreError(
-            f"a share of {share} cannot be dropped {rounds} times; give a share between 0 and 1 "
-            "and 1 round or more"
+            f"share must be between 0 and 1 and rounds at least 1, got {share} and {rounds}"
         )
     number = len(scores.table.alternatives)
     dropped = min(max(1, round(share * number)), number - 1)
@@ -79,7 +78,7 @@ def rank_reversal(
         try:
             after = score(scores.table.with_alternatives(left), scores.settings)
         except ScoreError:
-            # None of those that are left has a value of some criterion: nothing to rank.
+            # No remaining alternative has values in all criteria, so there is nothing to rank.
             continue
         shifts.append(np.abs(after.ranks - rank(before))[~np.isnan(before)])
         correlations.append(rank_correlation(np.stack([before, after.scores]))[0, 1])

@@ -1,4 +1,4 @@
-"""The ranking with everything that says how sure it is."""
+"""The ranking, with its uncertainty."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ INTERVALS: dict[str, Callable[[Scores, Bootstrap, int], tuple[Array, Array]]] = 
 
 @dataclass(frozen=True)
 class Ranking:
-    """Alternatives in order, with intervals, probabilities and significance.
+    """Ranked alternatives with intervals, probabilities and significance.
 
     Attributes
     ----------
@@ -43,9 +43,9 @@ class Ranking:
     comparisons : ComparisonsWithBest
     seed : int
     interval : {"joint", "pairwise"}
-        Kind of the score's interval: of resamples joint to all alternatives, or the thesis's.
+        Score interval: joint resampling of all alternatives, or pairwise as in the thesis.
     top_k : int
-        Places that count for ``probability_top``.
+        Number of first places that ``probability_top`` counts.
     """
 
     scores: Scores
@@ -56,12 +56,12 @@ class Ranking:
     top_k: int
 
     def frame(self, name: str = "alternative") -> pl.DataFrame:
-        """The ranking as a table, the best first; alternatives without a score are left out.
+        """The ranking as a table, the best first, without alternatives that have no score.
 
         Parameters
         ----------
         name : str
-            What to call the column of the alternatives.
+            Name of the column of alternatives.
 
         Returns
         -------
@@ -69,12 +69,12 @@ class Ranking:
             `name`; ``rank``, ``rank_low``, ``rank_high`` and ``score``, ``score_low``,
             ``score_high`` (95 %); ``probability_best``, ``probability_top``; ``p_value`` of the
             difference from the best (corrected; null for the best); ``success_rate``;
-            ``repeats`` measured; and the mean of each criterion over its valid repeats.
+            number of measured ``repeats``; and the mean of each criterion over its valid repeats.
 
         Raises
         ------
         ScoreError
-            If a criterion has the name of one of the other columns.
+            If a criterion has the same name as another column.
         """
         import polars as pl
 
@@ -98,8 +98,8 @@ class Ranking:
         means = dict(zip(table.criterion_names, scores.means.T, strict=True))
         if taken := sorted(figures.keys() & means.keys()):
             raise ScoreError(
-                f"criterion {taken[0]!r} has the name of another column of the ranking; give it "
-                "another name"
+                f"criterion {taken[0]!r} has the same name as a column of the ranking; rename the "
+                "criterion"
             )
         frame = pl.DataFrame({**figures, **means}, nan_to_null=True).with_columns(
             pl.col("rank", "rank_low", "rank_high").cast(pl.Int64)
@@ -107,7 +107,7 @@ class Ranking:
         return frame.select(pl.all().gather(scores.order.tolist()))
 
     def weights(self) -> pl.DataFrame:
-        """Weights of the criteria: ``criterion``, one column a method, their ``aggregate``."""
+        """Weights of the criteria: ``criterion``, one column per method, their ``aggregate``."""
         import polars as pl
 
         scores = self.scores
@@ -120,25 +120,25 @@ class Ranking:
         )
 
     def unscored(self) -> list[str]:
-        """Alternatives that lack a criterion and so have no score."""
+        """Alternatives without a score, because a criterion has no value."""
         scores = self.scores
         lacking = np.flatnonzero(np.isnan(scores.scores))
         return [scores.table.alternatives[position] for position in lacking]
 
     def indistinguishable(self, level: float = LEVEL) -> list[str]:
-        """Alternatives that cannot be told from the best, by their score."""
+        """Alternatives not significantly different from the best, sorted by score."""
         kept = set(self.comparisons.indistinguishable(level).tolist())
         names = self.scores.table.alternatives
         return [names[position] for position in self.scores.order if int(position) in kept]
 
     def untested(self) -> list[str]:
-        """Alternatives with a score that share too few repeats with the best to be compared."""
+        """Alternatives with a score, but too few repeats in common with the best for a test."""
         kept = set(self.comparisons.untested().tolist())
         names = self.scores.table.alternatives
         return [names[position] for position in self.scores.order if int(position) in kept]
 
     def settings(self) -> dict[str, Any]:
-        """Everything that was set, and what was drawn."""
+        """All settings, and the numbers of repeats and resamples."""
         return {
             **asdict(self.scores.settings),
             "criteria": list(self.scores.table.criterion_names),
@@ -162,21 +162,21 @@ def rank_alternatives(
     test: str = "bootstrap",
     top_k: int = TOP_K,
 ) -> Ranking:
-    """Score a table and tell how sure the ranking is.
+    """Score a table and estimate the uncertainty of the ranking.
 
     Parameters
     ----------
     table : DecisionTable
     settings : ScoreSettings, optional
     resamples : int
-        Of the repeats, jointly for all alternatives.
+        Number of bootstrap resamples of the repeats, jointly for all alternatives.
     seed : int
     interval : {"joint", "pairwise"}
-        Interval of the score: from the joint resamples, or the thesis's.
+        Score interval: joint resampling, or pairwise as in the thesis.
     test : {"bootstrap", "wilcoxon"}
-        Of the difference from the best; see `significance.compare_with_best`.
+        Significance test against the best; see `significance.compare_with_best`.
     top_k : int
-        Places that count for ``probability_top``.
+        Number of first places that ``probability_top`` counts.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def rank_alternatives(
         If the table cannot be scored or an argument does not exist.
     """
     if top_k < 1:
-        raise ScoreError(f"the first {top_k} places are none; take 1 or more")
+        raise ScoreError(f"top_k must be at least 1, got {top_k}")
     if interval not in INTERVALS:
         raise ScoreError(f"there is no interval {interval!r}; choose from {', '.join(INTERVALS)}")
     scores = score(table, settings)

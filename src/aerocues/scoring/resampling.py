@@ -1,4 +1,4 @@
-"""Draws repeats anew, jointly for all alternatives."""
+"""Resampling of repeats, jointly for all alternatives."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from aerocues.scoring.table import DecisionTable
 
 Array = NDArray[np.float64]
 Unit = Literal["block", "repeat"]
-# Of fewer blocks, hardly any resample differs from the others.
+# With fewer blocks, there are hardly any different resamples.
 FEWEST_BLOCKS = 5
 
 
 def unit_of_resampling(table: DecisionTable) -> Unit:
-    """Whole blocks where there are enough of them, else single repeats."""
+    """Whole blocks if there are enough of them, else single repeats."""
     blocks = len(np.unique(table.blocks))
     return "block" if FEWEST_BLOCKS <= blocks < len(table.repeats) else "repeat"
 
 
 def independent_units(table: DecisionTable) -> NDArray[np.int64]:
-    """(repeats,) number of the unit of resampling that each repeat belongs to, from 0."""
+    """(repeats,) number of the resampling unit of each repeat, from 0."""
     if unit_of_resampling(table) == "block":
         return np.unique(table.blocks, return_inverse=True)[1].astype(np.int64)
     return np.arange(len(table.repeats), dtype=np.int64)
 
 
 def draws(table: DecisionTable, resamples: int, seed: int, batch: int) -> Iterator[Array]:
-    """Resamples, in batches of (batch, repeats): how often each repeat was drawn.
+    """Resamples in batches of (batch, repeats): the number of times each repeat was drawn.
 
-    What is drawn depends on the seed alone, not on the size of a batch.
+    The draws depend only on the seed, not on the batch size.
     """
     units = independent_units(table)
     number = int(units.max()) + 1

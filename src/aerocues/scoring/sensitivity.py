@@ -1,4 +1,4 @@
-"""How much the ranking depends on choices: alpha, aggregation, each criterion."""
+"""Sensitivity of the ranking to alpha, to the aggregation and to each criterion."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ ALPHAS = (0.1, 0.25, 0.5, 0.75)
 
 @dataclass(frozen=True)
 class Variants:
-    """Rankings under variants of one choice.
+    """Rankings under variants of one setting.
 
     Attributes
     ----------
     names : tuple of str
     correlation : (variants, variants) float64
-        Spearman's rank correlation of the scores; NaN where it is not defined.
+        Spearman's rank correlation of the scores; NaN if undefined.
     best : tuple of str
-        The best alternative of each.
+        Best alternative of each variant.
     """
 
     names: tuple[str, ...]
@@ -44,7 +44,7 @@ def _variants(named: dict[str, Scores]) -> Variants:
 
 
 def by_alpha(scores: Scores, alphas: Sequence[float] = ALPHAS) -> Variants:
-    """Rankings under several powers of the normalised values."""
+    """Rankings with several powers of the normalised values."""
     chosen = dict.fromkeys((*sorted({*alphas, scores.settings.alpha}),))
     return _variants(
         {
@@ -55,7 +55,7 @@ def by_alpha(scores: Scores, alphas: Sequence[float] = ALPHAS) -> Variants:
 
 
 def by_aggregation(scores: Scores) -> Variants:
-    """Rankings under every way to aggregate the weights."""
+    """Rankings with every aggregation of the weights."""
     return _variants(
         {
             name: score(scores.table, replace(scores.settings, aggregation=name))
@@ -65,7 +65,7 @@ def by_aggregation(scores: Scores) -> Variants:
 
 
 def by_criterion_left_out(scores: Scores) -> Variants:
-    """Rankings without each criterion in turn; the first is that with all."""
+    """The ranking with all criteria, then the rankings without each criterion in turn."""
     names = scores.table.criterion_names
     left_out = names if len(names) > 1 else ()
     return _variants(

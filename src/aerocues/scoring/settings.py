@@ -1,4 +1,4 @@
-"""How a score is put together, and the presets of it: one row each."""
+"""Settings of the score, and presets of them: one row each."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class ScoreSettings:
     Attributes
     ----------
     alpha : float
-        Power of the normalised values, above 0; below 1 it lifts small values.
+        Exponent of the normalised values, above 0; below 1 it raises small values.
     weights : tuple of str
         Names of rows of `weights.WEIGHT_METHODS`.
     aggregation : str
-        How the weights of the methods become one: a row of `aggregation.AGGREGATIONS`.
+        Aggregation of the weights of the methods: a row of `aggregation.AGGREGATIONS`.
     failures : {"worst", "omit"}
-        Whether a failed repeat counts as the worst value of each criterion, or not at all.
+        Whether a failed repeat counts as the worst value of each criterion, or is left out.
 
     Raises
     ------
@@ -46,13 +46,13 @@ class ScoreSettings:
 
     def __post_init__(self) -> None:
         if not 0 < self.alpha < float("inf"):
-            raise ScoreError(f"alpha is {self.alpha}; give a number above 0, such as 0.5")
+            raise ScoreError(f"alpha must be above 0, such as 0.5; got {self.alpha}")
         if not self.weights:
-            raise ScoreError(f"no weights; choose from {', '.join(WEIGHT_METHODS)}")
+            raise ScoreError(f"weights must name at least one of {', '.join(WEIGHT_METHODS)}")
         for name in self.weights:
             _check(name, "method of weighting", tuple(WEIGHT_METHODS))
             if self.weights.count(name) > 1:
-                raise ScoreError(f"the weights name {name} twice; name it once")
+                raise ScoreError(f"the method of weighting {name} is given twice; give it once")
         _check(self.aggregation, "aggregation", tuple(AGGREGATIONS))
         _check(self.failures, "treatment of failures", FAILURES)
 
@@ -65,11 +65,10 @@ class ScorePreset:
     ----------
     name : str
     criteria, reconstruction_criteria : tuple of str
-        Names of rows of `criteria.CRITERIA`; the second are added where there are
-        reconstructions.
+        Names of rows of `criteria.CRITERIA`; the second are added if there are reconstructions.
     settings : ScoreSettings
     chance_fails : bool
-        Whether a model that is no better than chance is a failure.
+        Whether a pair has failed if its model is not better than chance.
     description : str
     """
 
@@ -102,7 +101,7 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
             ),
             ScoreSettings(),
             chance_fails=True,
-            description="inliers beyond chance; a failed pair counts as the worst; CRITIC of 1995",
+            description="inliers beyond chance; failed pairs count as the worst; CRITIC of 1995",
         ),
         ScorePreset(
             "thesis",
@@ -127,6 +126,6 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
 
 
 def score_preset_named(name: str) -> ScorePreset:
-    """The preset of this name; ScoreError where there is none."""
+    """The preset of this name; ScoreError if there is none."""
     _check(name, "preset of scoring", tuple(SCORE_PRESETS))
     return SCORE_PRESETS[name]

@@ -1,4 +1,4 @@
-"""Whether the best is better than another one, or could be so by luck of the repeats."""
+"""Tests whether the best alternative is significantly better than the others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aerocues.scoring.per_repeat import scores_of_units
 
 Array = NDArray[np.float64]
 LEVEL = 0.05
-# Of fewer repeats in common, no test can say much.
+# With fewer common repeats, no test has enough power.
 FEWEST_UNITS = 5
 
 
@@ -26,12 +26,12 @@ class ComparisonsWithBest:
     Attributes
     ----------
     best : int
-        Position of the best alternative.
+        Index of the best alternative.
     difference : (alternatives,) float64
-        Score of the best minus that of each.
+        Score of the best minus the score of each.
     p_value : (alternatives,) float64
         Two-sided, corrected for the number of comparisons (Holm); NaN for the best itself, for
-        alternatives without a score and for those that share too few repeats with the best.
+        alternatives without a score, and for those with too few repeats in common with the best.
     test : str
     """
 
@@ -41,11 +41,11 @@ class ComparisonsWithBest:
     test: str
 
     def indistinguishable(self, level: float = LEVEL) -> NDArray[np.int64]:
-        """Positions of those that cannot be told from the best, without the best itself."""
+        """Indices of the alternatives not significantly different from the best, without it."""
         return np.flatnonzero(self.p_value >= level)
 
     def untested(self) -> NDArray[np.int64]:
-        """Positions of those with a score that share too few repeats with the best."""
+        """Indices of the alternatives with a score but too few repeats in common with the best."""
         missing = np.isnan(self.p_value) & ~np.isnan(self.difference)
         missing[self.best] = False
         return np.flatnonzero(missing)
@@ -54,14 +54,14 @@ class ComparisonsWithBest:
 def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
     """Difference of the scores over its standard error among the resamples, Student's t.
 
-    A percentile of 1000 resamples cannot be smaller than 0.001, too coarse to be corrected for
-    hundreds of comparisons; the standard error can be had from them. Bounds and weights are held:
-    they stretch or shrink all differences alike, which is no doubt about who is better.
+    A percentile of 1000 resamples cannot be below 0.001, too coarse for a correction for hundreds
+    of comparisons; their standard error has no such limit. Bounds and weights are fixed: they
+    scale all differences alike and do not affect which alternative is better.
     """
     # scipy.stats.t has the same values, but takes most of a second to load.
     from scipy.special import stdtr
 
-    # What differs by rounding only is equal, as for ranks.
+    # Rounded as for ranks, so that rounding errors do not break ties.
     difference = np.abs(np.round(scores.scores[scores.best] - scores.scores, DIGITS))
     known = ~np.isnan(scores_of_units(scores))
     shared = (known & known[scores.best]).sum(axis=1)
@@ -80,7 +80,7 @@ def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
 def _by_signed_ranks(scores: Scores, _: Bootstrap) -> Array:
     """Wilcoxon's signed-rank test on the scores of single units (blocks or repeats).
 
-    Where unit by unit the other one is the better, the best is not told from it.
+    If the other alternative is better unit by unit, its p-value is 1.
     """
     from scipy.stats import wilcoxon
 
@@ -103,7 +103,7 @@ TESTS: dict[str, Callable[[Scores, Bootstrap], Array]] = {
 
 
 def holm(p_values: Array) -> Array:
-    """Correct p-values for their number (Holm 1979); NaN are no comparisons and stay.
+    """Correct p-values for their number (Holm 1979); NaN values are not counted and stay NaN.
 
     Parameters
     ----------
@@ -125,15 +125,15 @@ def holm(p_values: Array) -> Array:
 def compare_with_best(
     scores: Scores, resampled: Bootstrap, test: str = "bootstrap"
 ) -> ComparisonsWithBest:
-    """Test the best alternative against each other one, paired by repeats.
+    """Test the best alternative against each other alternative, paired by repeats.
 
     Parameters
     ----------
     scores : Scores
     resampled : Bootstrap
-        Of these scores.
+        Resamples of these scores.
     test : {"bootstrap", "wilcoxon"}
-        On the difference of the scores, or on those of single units of the repeats.
+        Test on the difference of the scores, or on the differences in single units.
 
     Raises
     ------
@@ -142,10 +142,10 @@ def compare_with_best(
 
     Notes
     -----
-    The best is chosen by the same repeats. The truly best is told from it no more often than the
-    level says, but of many that are equal, the luckiest may well be told from the unluckiest. And
-    where only two alternatives are scored by several criteria, their weights follow their
-    differences, so that small p-values are too frequent.
+    The best is chosen on the same repeats. The truly best alternative differs significantly from it
+    no more often than the level; but among many equal alternatives, the luckiest may differ
+    significantly from the unluckiest. With only two alternatives and several criteria, the weights
+    follow the differences, so that small p-values are too frequent.
     """
     if test not in TESTS:
         raise ScoreError(f"there is no test {test!r}; choose from {', '.join(TESTS)}")

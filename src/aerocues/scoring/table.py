@@ -17,33 +17,33 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-# Sums of larger ones might be no numbers any more.
+# Sums of larger values could overflow.
 LARGEST = 1e300
 
 
 @dataclass(frozen=True)
 class DecisionTable:
-    """What is to be scored.
+    """The input of a score.
 
     Attributes
     ----------
     alternatives, repeats : tuple of str
-        Their names; for aerocues, combinations and image pairs.
+        Names; for aerocues, combinations and image pairs.
     criteria : tuple of Criterion
     values : (alternatives, repeats, criteria) float64
-        NaN where there is no value.
+        NaN if there is no value.
     failed : (alternatives, repeats, criteria) bool
-        Where a measurement was tried and gave no value. No value and not failed: not measured.
+        Whether a measurement failed. No value and not failed means not measured.
     blocks : (repeats,) int64
-        The block (scene, sequence, day) that each repeat belongs to. Repeats of one block are
-        alike, so that only whole blocks can be taken for independent.
+        Block (scene, sequence, day) of each repeat. Repeats of one block are correlated, so that
+        only whole blocks are independent.
     components : mapping of str to tuple of str
-        Labels of the alternatives, one an alternative, to group them by.
+        Labels of the alternatives, one per alternative, for grouping.
 
     Raises
     ------
     ScoreError
-        If shapes do not fit, something is empty, infinite or contradictory, or a name comes twice.
+        If shapes do not fit, values are missing, infinite or contradictory, or a name occurs twice.
     """
 
     alternatives: tuple[str, ...]
@@ -62,10 +62,10 @@ class DecisionTable:
             ("criterion", names),
         ):
             if not listed:
-                raise ScoreError(f"the table has no {what}; it needs one at least")
+                raise ScoreError(f"the table has no {what}; it needs at least one")
             if len(set(listed)) < len(listed):
                 twice = next(name for name in listed if listed.count(name) > 1)
-                raise ScoreError(f"{what} {twice!r} comes twice in the table; keep one of them")
+                raise ScoreError(f"{what} {twice!r} occurs twice in the table; keep one of them")
         shape = (len(self.alternatives), len(self.repeats), len(self.criteria))
         if self.values.shape != shape or self.failed.shape != shape:
             raise ScoreError(f"the values have the shape {self.values.shape}; give {shape}")
@@ -79,17 +79,16 @@ class DecisionTable:
     def _check_values(self) -> None:
         if (np.abs(self.values) > LARGEST).any():
             raise ScoreError(
-                f"the values hold infinities or numbers beyond {LARGEST:g}; mark them as failed, "
-                "with NaN"
+                f"values are infinite or beyond {LARGEST:g}; mark them as failed, with NaN"
             )
         if (self.failed & ~np.isnan(self.values)).any():
-            raise ScoreError("a value is marked as failed; put NaN where a measurement failed")
+            raise ScoreError("a failed measurement has a value; failed values must be NaN")
         known = np.count_nonzero(~np.isnan(self.values), axis=(0, 1))
         names = self.criterion_names
         empty = [names[position] for position in np.flatnonzero(known == 0)]
         if empty:
             raise ScoreError(
-                f"there is no value at all for {', '.join(empty)}; leave such criteria out"
+                f"no alternative has a value for {', '.join(empty)}; leave these criteria out"
             )
 
     @property
@@ -98,22 +97,22 @@ class DecisionTable:
 
     @property
     def is_cost(self) -> Mask:
-        """(criteria,) bool: where lower is better."""
+        """(criteria,) bool: whether lower is better."""
         return np.array([criterion.better == "lower" for criterion in self.criteria])
 
     @property
     def by_repeat(self) -> Mask:
-        """(criteria,) bool: criteria that have a value a repeat, not one an alternative."""
+        """(criteria,) bool: whether a criterion has a value per repeat, not per alternative."""
         return np.array([not criterion.reconstruction for criterion in self.criteria])
 
     @property
     def tried(self) -> NDArray[np.int64]:
-        """(alternatives,) repeats that were measured, with success or not."""
+        """(alternatives,) number of measured repeats, including failed ones."""
         return np.asarray(self._tried.any(axis=2).sum(axis=1))
 
     @property
     def success_rate(self) -> Array:
-        """(alternatives,) share of the repeats tried in which no criterion failed."""
+        """(alternatives,) share of the measured repeats in which no criterion failed."""
         succeeded = self._tried.any(axis=2) & ~self.failed[:, :, self._of_repeats].any(axis=2)
         return np.asarray(succeeded.sum(axis=1) / np.maximum(self.tried, 1))
 
@@ -127,7 +126,7 @@ class DecisionTable:
         return np.asarray(self.failed[:, :, chosen] | ~np.isnan(self.values[:, :, chosen]))
 
     def without_criterion(self, name: str) -> DecisionTable:
-        """The same table with one criterion less."""
+        """The table without one criterion."""
         keep = [position for position, each in enumerate(self.criterion_names) if each != name]
         return replace(
             self,
@@ -137,7 +136,7 @@ class DecisionTable:
         )
 
     def with_alternatives(self, keep: Sequence[int] | NDArray[np.int64]) -> DecisionTable:
-        """The same table with the alternatives at these positions only."""
+        """The table with only the alternatives at these indices."""
         positions = [int(position) for position in keep]
         return replace(
             self,
@@ -158,12 +157,12 @@ class DecisionTable:
         criteria: Sequence[Criterion],
         repeats: Sequence[str] | None = None,
     ) -> DecisionTable:
-        """A table from an array; every NaN in it is a failure, every repeat a block of its own.
+        """A table from an array: every NaN is a failure, and every repeat is its own block.
 
         Parameters
         ----------
         values : (alternatives, repeats, criteria) float64
-            Or (alternatives, criteria), where there is one repeat.
+            Or (alternatives, criteria) for a single repeat.
         alternatives : sequence of str
         criteria : sequence of Criterion
         repeats : sequence of str, optional
@@ -172,14 +171,14 @@ class DecisionTable:
         Raises
         ------
         ScoreError
-            As for the class.
+            See the class.
         """
         array = np.asarray(values, dtype=np.float64)
         if array.ndim == 2:
             array = array[:, None, :]
         if array.ndim != 3:
             raise ScoreError(
-                f"the values have {array.ndim} axes; give alternatives, repeats, criteria"
+                f"values must have the axes alternatives, repeats, criteria; got {array.ndim} axes"
             )
         number = array.shape[1]
         return cls(
@@ -201,10 +200,10 @@ class DecisionTable:
         repeat: str | None = None,
         block: str | None = None,
     ) -> DecisionTable:
-        """Read a table with one row an alternative and repeat.
+        """Read a table with one row per alternative and repeat.
 
-        A row without a finite number for a criterion has failed on it; an alternative without a
-        row for a repeat was not measured on it.
+        A row without a finite value of a criterion has failed in it; an alternative without a row
+        for a repeat was not measured on it.
 
         Parameters
         ----------
@@ -213,14 +212,14 @@ class DecisionTable:
             Column with the names of the alternatives.
         criteria : sequence of Criterion
         repeat : str, optional
-            Column that tells the repeats apart; without it, each alternative has one row.
+            Column that identifies the repeat; without it, each alternative has one row.
         block : str, optional
-            Column that says which repeats are alike.
+            Column that identifies the block of a repeat.
 
         Raises
         ------
         ScoreError
-            If a column is missing or no number, or two rows are about the same.
+            If a column is missing or not numeric, or two rows have the same alternative and repeat.
         """
         from aerocues.scoring.long_form import read_long_form
 

@@ -1,4 +1,4 @@
-"""Everything that tells how far a ranking can be trusted, in one go."""
+"""All examinations of how robust a ranking is."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 SHORTLIST = 10
-# The first of each that a table has: what is fast, and what is good.
+# Axes of the Pareto front: the first criterion of each list that the table has.
 SPEED = (
     "seconds_per_1k_excess_inliers",
     "seconds_per_1k_inliers",
@@ -34,25 +34,25 @@ QUALITY = ("precision_beyond_chance", "precision", "f1_score", "inliers")
 
 @dataclass(frozen=True)
 class Validation:
-    """What `validate` finds.
+    """The result of `validate`.
 
     Attributes
     ----------
     alpha, aggregation, criterion_left_out : Variants
     agreement : Agreement or str
-        Or why it is not known.
+        A text says why it is not available.
     criteria_correlation : (criteria, criteria) float64
-        Pearson's.
+        Pearson's correlation.
     hierarchies : dict of pl.DataFrame
         By component.
     pareto_criteria : tuple of str
-        Speed and quality; empty where the table has no such criteria.
+        Speed and quality; empty if the table has no such criteria.
     pareto_front : (alternatives on the front,) int64
-        Positions, the fastest first.
+        Indices, the fastest first.
     rank_reversal : RankReversal or None
         None with a single alternative.
     critical_difference : CriticalDifference or str
-        Of the best few; or why it is not known.
+        For the shortlist; a text says why it is not available.
     """
 
     alpha: Variants
@@ -75,16 +75,16 @@ def validate(
     shortlist: int = SHORTLIST,
     seed: int = 0,
 ) -> Validation:
-    """Examine a ranking as the thesis does, and further.
+    """Examine a ranking as in the thesis, and further.
 
     Parameters
     ----------
     scores : Scores
     speed, quality : str, optional
-        Criteria of the Pareto front; by default the first that the table has of `SPEED` and
-        `QUALITY`.
+        Criteria of the Pareto front; by default the first of `SPEED` and `QUALITY` that the table
+        has.
     shortlist : int
-        How many of the best take part in Friedman's test.
+        Number of best alternatives in Friedman's test.
     seed : int
 
     Raises

@@ -1,7 +1,6 @@
 """Objective weights of criteria, from the spread and the redundancy of their values.
 
-All functions take a batch of matrices at once, so that weights can be estimated anew in every
-resample.
+All functions take a batch of matrices, so that weights can be estimated anew in every resample.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ DEGENERATE = 1e-9
 
 @dataclass(frozen=True)
 class Spread:
-    """What all methods need to know of a batch of matrices.
+    """Statistics of a batch of matrices that the methods need.
 
     Attributes
     ----------
     matrix : (batch, alternatives, criteria) float64
-        In [0, 1], higher is better; 0 where an alternative does not take part.
+        In [0, 1], higher is better; 0 for excluded alternatives.
     count : (batch, 1) float64
-        Alternatives that take part.
+        Number of included alternatives.
     covariance : (batch, criteria, criteria) float64
         Population covariance of the criteria over the alternatives.
     """
@@ -57,9 +56,9 @@ def _variance(spread: Spread) -> Array:
 
 
 def _correlation(spread: Spread) -> Array:
-    """Pearson's r of each pair of criteria; 1 with a constant one, which conflicts with none.
+    """Pearson's r of each pair of criteria; 1 for a constant criterion, which has no conflicts.
 
-    What rounding leaves of 1 - r would become a weight where all agree, as two alternatives may.
+    r is rounded near 1: if all criteria agree, rounding errors of 1 - r would become weights.
     """
     deviation = np.sqrt(spread.variance)
     product = deviation[:, :, None] * deviation[:, None, :]
@@ -86,19 +85,19 @@ def _pca(spread: Spread) -> Array:
     loadings = np.abs(vectors)
     values = np.maximum(values, 0)
     largest = values[:, -1:]
-    # Where eigenvalues are equal, any turn of their vectors is as good as another, and the order
-    # of the criteria would decide. What does not turn is the projection onto their space.
+    # For equal eigenvalues the eigenvectors are arbitrary up to a rotation, which would depend on
+    # the order of the criteria. The projection onto their space is unique.
     close = np.diff(values, axis=-1) <= DEGENERATE * largest
     matters = values[:, 1:] > DEGENERATE * largest
     for one in np.flatnonzero((close & matters).any(axis=-1)):
-        loadings[one] = _unturned(values[one], vectors[one])
+        loadings[one] = _rotation_free(values[one], vectors[one])
     total = values.sum(axis=-1, keepdims=True)
     ratio = values / np.where(total > 0, total, 1)
     return np.asarray(np.einsum("bck,bk->bc", loadings, ratio))
 
 
-def _unturned(values: Array, vectors: Array) -> Array:
-    """Loadings (criteria, components) in which components of equal eigenvalue share alike."""
+def _rotation_free(values: Array, vectors: Array) -> Array:
+    """Loadings (criteria, components), equal for all components of the same eigenvalue."""
     loadings = np.abs(vectors)
     starts = np.flatnonzero(np.diff(values, prepend=-1.0) > DEGENERATE * values[-1])
     for start, end in zip(starts, [*starts[1:], len(values)], strict=True):
@@ -109,7 +108,7 @@ def _unturned(values: Array, vectors: Array) -> Array:
 
 @dataclass(frozen=True)
 class WeightMethod:
-    """One method: ``compute`` gives (batch, criteria), not negative, of any sum."""
+    """One method: ``compute`` returns (batch, criteria), non-negative, not normalised."""
 
     name: str
     description: str
@@ -155,15 +154,15 @@ def weights_by_method(matrix: Array, methods: Sequence[str]) -> Array:
     Parameters
     ----------
     matrix : (batch, alternatives, criteria) float64
-        In [0, 1], higher is better; NaN in all criteria of an alternative that does not take part.
+        In [0, 1], higher is better; NaN in all criteria of an excluded alternative.
     methods : sequence of str
         Names of rows of `WEIGHT_METHODS`.
 
     Returns
     -------
     (batch, methods, criteria) float64
-        Each set sums to 1. A constant criterion weighs 0; where a method tells none from the
-        others, those that are not constant weigh alike, and where all are constant, all do.
+        Each set sums to 1. A constant criterion has weight 0. If a method gives no weight to any
+        criterion, all criteria that vary get equal weights; if all are constant, all do.
     """
     present = ~np.isnan(matrix)
     varies = _varies(matrix, present)
