@@ -1,4 +1,4 @@
-"""How a dataset is opened by its text form."""
+"""Opens a dataset by its text form."""
 
 from __future__ import annotations
 
@@ -37,30 +37,31 @@ def open_dataset(
         folder.
     pairs : str, optional
         ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m``,
-        ``overlap:0.3-0.9`` or the path of a pairs file; for the kinds without pairs of their own.
+        ``overlap:0.3-0.9`` or the path of a pairs file; only for kinds without pairs of their own.
     max_width : int, optional
-        Wider images are shrunk to this width in pixels, and homographies scaled along; 0: none.
+        Wider images are shrunk to this width in pixels, and homographies are scaled accordingly;
+        0 keeps the size.
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
     limit : int, optional
-        Keep the first pairs only.
+        Keep only the first pairs.
     sequences : str or sequence of str, optional
         Keep the sequences that match one of these names or globs, in any case; a text is split at
-        its commas.
+        commas.
     subset : str, optional
         Use only the images whose name or folder, relative to the dataset's, matches one of these
-        globs, separated by commas: ``Layer3/pitch-90_yaw0``; for the kinds without pairs of their
+        globs, separated by commas: ``Layer3/pitch-90_yaw0``; only for kinds without pairs of their
         own.
 
     Returns
     -------
     Dataset
-        Without the images that no pair uses; the pairs that are left keep their numbers.
+        Without images that no pair uses; the remaining pairs keep their numbers.
 
     Raises
     ------
     DatasetError
-        If the kind is unknown, something is missing, or an option makes no sense.
+        If the kind is unknown, files are missing, or an option is invalid.
     """
     if limit is not None and limit < 1:
         raise DatasetError(f"--limit {limit} leaves no pairs; give 1 or more")
@@ -87,15 +88,15 @@ def open_dataset(
 
 
 def takes_pairs(spec: str) -> bool:
-    """Whether the kind of dataset that a text form names leaves open how images are paired."""
+    """Whether the pairs of this kind of dataset can be chosen."""
     return _parse(spec)[0].takes_pairs
 
 
 def _absolute(kind: DatasetKind, target: Path | None) -> str:
-    """The text form of a dataset that means the same in any folder."""
+    """The text form with an absolute path."""
     if target is None:
         return kind.name
-    # A plain folder has no word before a colon; nor does its path begin with one, being absolute.
+    # A plain folder has no prefix; its absolute path cannot be taken for one.
     return str(target.absolute()) if kind.form == "DIR" else f"{kind.name}:{target.absolute()}"
 
 

@@ -1,4 +1,4 @@
-"""What is measured on: images, pairs of images and what is known to be true about them."""
+"""Datasets: images, pairs of images and their ground truth."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Pixels:
     bgr : (H, W, 3) uint8
         Blue, green, red; a gray source has three equal channels.
     valid : (H, W) bool or None
-        False where the picture has no content (the border that a warp leaves); None: all valid.
+        False where the image has no content (the border of a warp); None: all valid.
     """
 
     bgr: NDArray[np.uint8]
@@ -30,7 +30,7 @@ class Pixels:
 
 
 class ImageSource(Protocol):
-    """Where an image comes from: a file, or a recipe applied to another source."""
+    """The source of an image: a file, or a transformation of another source."""
 
     def read(self) -> Pixels:
         """Decode the image.
@@ -38,14 +38,14 @@ class ImageSource(Protocol):
         Raises
         ------
         ImageError
-            If it cannot be decoded whole.
+            If it cannot be decoded completely.
         """
 
     def content_key(self) -> str:
         """Hexadecimal hash of the content and of everything that changes the pixels."""
 
     def is_gray(self) -> bool:
-        """Whether the source has a single channel, by its header; False where that is broken."""
+        """Whether the source has a single channel, by its header; False if that is broken."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +58,12 @@ class GpsPosition:
 
 
 class DepthSource(Protocol):
-    """Where the true depth of an image comes from."""
+    """The source of the true depth of an image."""
 
     def read(self) -> NDArray[np.float32]:
         """Planar depth: (H, W) float32 metres along the viewing axis.
 
-        Infinite in the sky, NaN where it is unknown.
+        Infinite in the sky, NaN where unknown.
 
         Raises
         ------
@@ -89,7 +89,7 @@ class PinholeCamera:
 
 @dataclass(frozen=True, eq=False)
 class TrueView:
-    """What is known to be true of an image.
+    """The ground truth of an image.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class TrueView:
     depth: DepthSource | None = None
 
     def identity(self) -> list[object]:
-        """All that is known, as JSON can write it; the depth by its hash."""
+        """The ground truth in JSON types; the depth as its hash."""
         depth = None if self.depth is None else self.depth.content_key()
         return [*astuple(self.camera), self.rotation.tolist(), self.centre.tolist(), depth]
 
@@ -130,19 +130,19 @@ class Image:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two images to be matched.
+    """Two images to match.
 
     Parameters
     ----------
     index : int
-        0-based position among the pairs of the whole dataset; a part of it keeps the numbers.
+        0-based index among the pairs of the whole dataset; subsets keep it.
     image_1, image_2 : str
         Names of the images.
     sequence : str
-        The scene, sequence, project or kind of transformation that the pair belongs to.
+        Scene, sequence, project or kind of transformation of the pair.
     homography : (3, 3) float64 or None
-        Maps pixels of image 1 to pixels of image 2 (pixel centres at integers), at the size at
-        which the images are read.
+        Maps pixels of image 1 to pixels of image 2 (pixel centres at integers), at the size of the
+        images as read.
     """
 
     index: int
@@ -154,14 +154,14 @@ class Pair:
 
 @dataclass(frozen=True)
 class Source:
-    """What `open_dataset` was given, so that the same images can be opened again.
+    """The arguments of `open_dataset`, to open the same images again.
 
     Parameters
     ----------
     spec : str
         Text form of the dataset, with an absolute path.
     pairs, max_width, equalize, limit, sequences, subset
-        As `open_dataset` takes them; the names of sequences as one text.
+        See `open_dataset`; the names of sequences as one text.
     """
 
     spec: str
@@ -175,11 +175,11 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """Images and the pairs of them that are matched.
+    """Images, and the pairs of images to match.
 
-    ``geometry`` names the model that relates two images: a homography (plane or rotation) or
-    epipolar geometry. ``settings`` records how the dataset was made (pairs, size, equalisation).
-    ``source`` tells how to open it again, where that is known; no measurement depends on it.
+    ``geometry`` is the model that relates two images: a homography (plane or rotation) or epipolar
+    geometry. ``settings`` records how the dataset was made (pairs, size, equalisation). ``source``
+    is how to open it again, if known; no measurement depends on it.
     """
 
     name: str
@@ -190,15 +190,15 @@ class Dataset:
     source: Source | None = None
 
     def image(self, name: str) -> Image:
-        """The image called `name`; KeyError where there is none."""
+        """The image called `name`; KeyError if there is none."""
         return self._by_name[name]
 
     def pair(self, index: int) -> Pair:
-        """The pair whose ``index`` is `index`; KeyError where there is none."""
+        """The pair whose ``index`` is `index`; KeyError if there is none."""
         return self._by_index[index]
 
     def true_views(self, pair: Pair) -> tuple[TrueView, TrueView] | None:
-        """What is known to be true of both images of a pair; None where it is not of both."""
+        """The ground truth of both images of a pair; None unless both have one."""
         first, second = self.image(pair.image_1).truth, self.image(pair.image_2).truth
         return None if first is None or second is None else (first, second)
 

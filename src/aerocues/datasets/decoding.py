@@ -1,4 +1,4 @@
-"""Image files: decoded whole, the right way up, as 8-bit BGR, or refused with a reason."""
+"""Decodes image files completely, upright, as 8-bit BGR, or refuses them with a reason."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from aerocues.datasets.integrity import find_damage
 from aerocues.errors import ImageError
 
 PIXEL_LIMIT = 250_000_000
-"""Images with more pixels are refused, or decoded at reduced size where the format allows it."""
+"""Images with more pixels are refused, or decoded at reduced size if the format allows it."""
 
 DECODING_VERSION = "1"
-"""Part of content keys; raised when decoding comes to give other pixels for the same file."""
+"""Part of content keys; increased when decoding gives other pixels for the same file."""
 
 _SENSOR_WHITES = tuple(2**bits - 1 for bits in (8, 10, 12, 14, 16))
 _REDUCED = {
@@ -34,7 +34,7 @@ _REDUCED = {
 
 @dataclass(frozen=True)
 class FileSource:
-    """An image file and how it is to be read.
+    """An image file, and how to read it.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class FileSource:
         JPEG, PNG, TIFF, BMP, WebP or PPM/PGM file; gray, colour, palette, with or without alpha,
         8 or 16 bits or floating point.
     max_width : int or None
-        Wider pictures are shrunk to this width in pixels (after the EXIF orientation is applied).
+        Wider images are shrunk to this width in pixels (after the EXIF orientation is applied).
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
     pixel_limit : int
@@ -51,7 +51,7 @@ class FileSource:
     Raises
     ------
     DatasetError
-        If a setting makes no sense.
+        If a setting is invalid.
     """
 
     path: Path
@@ -68,14 +68,14 @@ class FileSource:
         Returns
         -------
         Pixels
-            At its final size. Pixels that are wholly transparent (alpha 0) or not finite are black
-            and not valid; otherwise alpha is dropped (in 8-bit TIFF, what is partly transparent is
-            laid over black).
+            At its final size. Fully transparent (alpha 0) and non-finite pixels are black and not
+            valid; otherwise alpha is ignored (in 8-bit TIFF, partly transparent pixels are blended
+            with black).
 
         Raises
         ------
         ImageError
-            If the file cannot be read, is no image, is truncated or damaged, or is too large.
+            If the file cannot be read, is not an image, is truncated or damaged, or is too large.
         """
         data = self._bytes()
         header = read_header(data, str(self.path))
@@ -89,7 +89,7 @@ class FileSource:
         return equalize_luminance(shrink(pixels, self.max_width), self.equalize)
 
     def size(self) -> tuple[int, int]:
-        """Width and height at which `read` returns the picture, from the header alone.
+        """Width and height of the image that `read` returns, from the header alone.
 
         Raises
         ------
@@ -99,13 +99,13 @@ class FileSource:
         return fitted_size(self.original_size(), self.max_width)
 
     def original_size(self) -> tuple[int, int]:
-        """Width and height of the picture in the file, the right way up."""
+        """Width and height of the image in the file, upright."""
         return read_header(self.path, str(self.path)).size
 
     def is_gray(self) -> bool:
         """Whether the file has a single channel; False if the header cannot be read.
 
-        A broken file is an error of its pairs, which `read` tells, and not one of the dataset.
+        A broken file is an error of its pairs, raised by `read`, not of the dataset.
         """
         try:
             return read_header(self.path, str(self.path)).gray
@@ -113,7 +113,7 @@ class FileSource:
             return False
 
     def __getstate__(self) -> dict[str, object]:
-        """Without the hash: on another machine the file may be another one."""
+        """Without the hash: on another machine the file may differ."""
         return {name: value for name, value in vars(self).items() if name != "_content_key"}
 
     def content_key(self) -> str:
@@ -133,7 +133,7 @@ class FileSource:
             raise ImageError(unreadable(str(self.path), error)) from error
 
     def _reduction(self, header: Header) -> int:
-        """The factor by which the decoder shall shrink the picture: 1, or more if too large."""
+        """The factor by which the decoder shrinks the image: 1, or more if it is too large."""
         if header.pixels <= self.pixel_limit:
             return 1
         message = (
@@ -152,10 +152,10 @@ class FileSource:
 
 
 def _decode(data: bytes, header: Header, factor: int) -> Any:
-    """Pixels as stored, by OpenCV; None where it cannot."""
+    """Pixels as stored, decoded by OpenCV; None if that fails."""
     if header.format == "JPEG":
         flag = _REDUCED.get(factor, cv2.IMREAD_COLOR) | cv2.IMREAD_IGNORE_ORIENTATION
-    elif header.mode == "CMYK":  # its four channels would be taken for colour and alpha
+    elif header.mode == "CMYK":  # its four channels would be read as colour and alpha
         flag = cv2.IMREAD_COLOR
     else:
         flag = cv2.IMREAD_UNCHANGED
@@ -166,7 +166,7 @@ def _decode(data: bytes, header: Header, factor: int) -> Any:
 
 
 def _oriented(stored: Any, header: Header) -> Any:
-    """Turn the picture the right way up as EXIF says (OpenCV does so itself for TIFF)."""
+    """Apply the EXIF orientation (OpenCV does so itself for TIFF)."""
     if header.format == "TIFF":
         return stored
     if header.orientation >= 5:
@@ -204,16 +204,16 @@ def _split_alpha(decoded: NDArray[Any]) -> tuple[Any, NDArray[np.bool_] | None]:
 
 
 def _full_scale(values: NDArray[np.uint16]) -> int:
-    """White of a 16-bit picture: of the narrowest sensor depth (8 to 16 bits) that holds it.
+    """White level of a 16-bit image: that of the smallest bit depth (8 to 16) that contains it.
 
-    Cameras store 10, 12 or 14 bits in 16-bit files; divided by 256 those would come out black.
+    Cameras store 10, 12 or 14 bits in 16-bit files, which would be nearly black if divided by 256.
     """
     highest = int(values.max())
     return next(white for white in _SENSOR_WHITES if highest <= white)
 
 
 def _stretched(values: NDArray[Any]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """Floating point and wide integers have no white: from the least to the greatest value."""
+    """Floating point and wide integers have no white level: scaled from minimum to maximum."""
     wide = values.astype(np.float32)
     finite: NDArray[np.bool_] = np.isfinite(wide)
     low, high = (wide[finite].min(), wide[finite].max()) if finite.any() else (0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Downloads one file over HTTP: goes on where it broke off, tries again, tells how far it is."""
+"""Downloads one file over HTTP: resumes, retries and reports progress."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import IO
 from aerocues.errors import DatasetError
 
 Progress = Callable[[str, int, int | None], None]
-"""Called with the file's name, the bytes that are there, and all its bytes (None: not known)."""
+"""Called with the file's name, the bytes so far, and the total bytes (None: unknown)."""
 
 _BLOCK = 1 << 18
 _NOTHING_LEFT = 416
@@ -22,7 +22,7 @@ _PARTIAL = 206
 
 
 class DownloadError(DatasetError):
-    """A file could not be downloaded; what came of it is kept and used at the next attempt."""
+    """A file could not be downloaded; the next attempt continues from the part received."""
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,16 @@ class Downloader:
     Parameters
     ----------
     part : Path
-        Where the file grows; it stays there when the transfer breaks off. Its validator (ETag or
-        date) lies beside it, so that two versions of a file are never joined.
+        Partial file; it is kept when the transfer is interrupted. Its validator (ETag or date) is
+        stored next to it, so that two versions of a file are never joined.
     progress : Progress or None
-        Told of every block.
+        Called after every block.
     attempts : int
-        How often to try when the connection fails; a refusal by the server (404) is final.
+        Number of attempts when the connection fails; a refusal by the server (404) is final.
     pause : float
         Seconds before the second attempt, doubled before each further one.
     timeout : float
-        Seconds of silence after which a connection counts as broken.
+        Seconds without data after which the connection counts as broken.
     """
 
     part: Path
@@ -51,13 +51,13 @@ class Downloader:
     timeout: float = 30.0
 
     def __call__(self, url: str, output_file: str | Path, pooch: object) -> None:
-        """Download `url` whole and put it at `output_file`; DownloadError if that fails."""
+        """Download `url` to `output_file`; DownloadError if that fails."""
         reason: Exception | None = None
         for attempt in range(self.attempts):
             if attempt:
                 time.sleep(self.pause * 2 ** (attempt - 1))
             try:
-                self._go_on(url)
+                self._resume(url)
             except urllib.error.HTTPError as error:
                 reason = error
                 if error.code < 500 and error.code not in (408, 429):
@@ -74,7 +74,7 @@ class Downloader:
     def _validator(self) -> Path:
         return self.part.with_name(self.part.name + ".validator")
 
-    def _go_on(self, url: str) -> None:
+    def _resume(self, url: str) -> None:
         start = self._bytes_there()
         try:
             self._transfer(url, start)
@@ -104,7 +104,7 @@ class Downloader:
             raise http.client.IncompleteRead(b"", total - there)
 
     def _remember(self, validator: str | None) -> None:
-        # A weak validator does not promise equal bytes: then the next attempt starts anew.
+        # A weak validator does not guarantee equal bytes: the next attempt then starts over.
         if validator is None or validator.startswith("W/"):
             self._validator.unlink(missing_ok=True)
         else:
@@ -127,5 +127,5 @@ def _words(reason: Exception | None) -> str:
     if isinstance(reason, urllib.error.URLError):
         return str(reason.reason)
     if isinstance(reason, http.client.IncompleteRead):
-        return "the connection broke off"
+        return "the connection was interrupted"
     return str(reason) or type(reason).__name__

@@ -1,4 +1,4 @@
-"""Fetches the public benchmarks from their authors' addresses."""
+"""Downloads the public benchmarks from their authors' addresses."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ CHECKSUMS = "checksums.json"
 
 @dataclass(frozen=True)
 class Location:
-    """An address of an archive, with its SHA-256 where that is known for certain.
+    """An address of an archive, with its SHA-256 if known.
 
-    Where it is not, the first download is trusted and its hash written down in `CHECKSUMS`;
-    every later download into the same folder must agree with it.
+    If it is unknown, the first download is trusted and its hash recorded in `CHECKSUMS`; later
+    downloads into the same folder must have the same hash.
     """
 
     url: str
@@ -43,18 +43,18 @@ class Archive:
 
 @dataclass(frozen=True)
 class Benchmark:
-    """A benchmark that can be fetched.
+    """A benchmark that can be downloaded.
 
     Parameters
     ----------
     name : str
-        As in the catalog.
+        Name in the catalog.
     archives : tuple of Archive
-        Its files.
+        Files to download.
     marker : str
-        A file that each sequence's folder has.
+        A file in the folder of each sequence.
     layout : str
-        What must be there in the end, for those who place the files themselves.
+        The resulting files, for users who place them by hand.
     """
 
     name: str
@@ -98,21 +98,21 @@ def fetch(
 ) -> list[Path]:
     """Download a benchmark and unpack it, so that ``open_dataset(f"{name}:{to}")`` opens it.
 
-    What is there already is not fetched again; what broke off goes on where it was. An archive
-    that lies in `to` under its own name is used in place of a download.
+    Existing sequences are not downloaded again, and an interrupted download continues. An archive
+    in `to` with its original name is used in place of a download.
 
     Parameters
     ----------
     name : str
         A key of `BENCHMARKS`.
     to : path
-        Folder; made if missing.
+        Folder, created if missing.
     base_url : str, optional
-        Address of a folder (a mirror) that has the archives under their own names.
+        URL of a mirror with the archives under their original names.
     progress : callable, optional
-        Called with a file's name, its bytes that are there and all its bytes (None: not known).
+        Called with the file's name, the bytes so far, and the total bytes (None: unknown).
     attempts, pause : int, float
-        How often to try when a connection fails; seconds before the second attempt (then doubled).
+        Attempts when a connection fails; seconds before the second attempt (then doubled).
 
     Returns
     -------
@@ -123,14 +123,14 @@ def fetch(
     ------
     DatasetError
         If the benchmark is unknown, the folder cannot be written, a checksum is wrong, an archive
-        is damaged, or nothing could be downloaded: then the message says what to put where.
+        is damaged, or the download failed: then the message says which files to place where.
     MethodUnavailableError
         If pooch is not installed.
     """
     if name not in BENCHMARKS:
-        raise DatasetError(f"'{name}' cannot be fetched; these can: {', '.join(BENCHMARKS)}")
+        raise DatasetError(f"there is no benchmark {name!r}; choose from {', '.join(BENCHMARKS)}")
     if base_url is not None and not base_url.startswith(("http://", "https://")):
-        raise DatasetError(f"{base_url} is no web address; give one that begins with https://")
+        raise DatasetError(f"{base_url} is not a web address; give one that begins with https://")
     benchmark, folder = BENCHMARKS[name], Path(to).expanduser()
     _load_pooch()
     try:
@@ -149,7 +149,7 @@ def fetch(
             folders += [folder / sequence for sequence in sequences]
     except OSError as error:
         raise DatasetError(
-            f"cannot write to {folder}: {error.strerror}; check its rights and the free space"
+            f"cannot write to {folder}: {error.strerror}; check permissions and free space"
         ) from error
     return folders
 
@@ -165,7 +165,7 @@ def _load_pooch() -> Any:
 
 @dataclass(frozen=True)
 class _Record:
-    """The file `CHECKSUMS`: hashes of the archives, and the sequences that came out of them."""
+    """The file `CHECKSUMS`: hashes of the archives, and the sequences in each."""
 
     folder: Path
     hashes: dict[str, str]
@@ -183,7 +183,7 @@ class _Record:
             raise DatasetError(f"{file} is damaged; remove it and fetch again") from error
 
     def unpacked(self, archive: Archive) -> list[str] | None:
-        """The sequences of an archive if all of them are there."""
+        """The sequences of an archive, if all of them exist."""
         names = self.sequences.get(archive.sequence)
         if names is None or not all((self.folder / name).is_dir() for name in names):
             return None
@@ -209,10 +209,10 @@ _How = tuple[str | None, Progress | None, int, float]
 
 
 def _download(benchmark: Benchmark, archive: Archive, record: _Record, how: _How) -> Path:
-    """The archive in the folder, downloaded from the first address that gives it."""
+    """The archive in the folder, downloaded from the first address that works."""
     base_url, progress, attempts, pause = how
     failures = []
-    # An archive that someone has put here comes before any address.
+    # An archive that is already in the folder comes before any address.
     for location in sorted(
         archive.locations, key=lambda location: not (record.folder / location.file).exists()
     ):
@@ -223,14 +223,14 @@ def _download(benchmark: Benchmark, archive: Archive, record: _Record, how: _How
         except DownloadError as error:
             failures.append(str(error))
     raise DownloadError(
-        f"{'; '.join(failures)}; on a machine that reaches it, get {_by_hand(benchmark, record)}, "
-        f"put that into {record.folder} and run this again, or unpack it there yourself so that "
-        f"there are {benchmark.layout}"
+        f"{'; '.join(failures)}; on a machine with access, download {_by_hand(benchmark, record)}, "
+        f"copy it into {record.folder} and run this again, or unpack it there so that there are "
+        f"{benchmark.layout}"
     )
 
 
 def _by_hand(benchmark: Benchmark, record: _Record) -> str:
-    """The addresses of all archives that are still missing."""
+    """The addresses of all missing archives."""
     missing = [archive for archive in benchmark.archives if record.unpacked(archive) is None]
     return ", ".join(" or ".join(place.url for place in row.locations) for row in missing)
 
@@ -254,8 +254,8 @@ def _retrieve(url: str, location: Location, record: _Record, downloader: Downloa
         )
     except ValueError as error:  # pooch has removed the file
         raise DatasetError(
-            f"{url} does not have the checksum {known} that it should have; if its authors have "
-            f"changed it, remove it from {record.folder / CHECKSUMS}, else try another address"
+            f"{url} does not have the expected checksum {known}; if its authors have changed it, "
+            f"remove the checksum from {record.folder / CHECKSUMS}, else try another address"
         ) from error
     finally:
         logger.setLevel(level)

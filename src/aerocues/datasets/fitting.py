@@ -1,4 +1,4 @@
-"""Brings decoded pixels to the size and the illumination that are asked for."""
+"""Resizes decoded images and normalises their illumination."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CLAHE_TILES = (8, 8)
 
 
 def check_settings(max_width: int | None, equalize: str) -> None:
-    """Raise DatasetError unless the size and the equalisation make sense."""
+    """Raise DatasetError unless the size and the equalisation are valid."""
     if max_width is not None and max_width < 16:
         raise DatasetError(
             f"--max-width {max_width} is too small; give 16 pixels or more, or 0 for all"
@@ -37,14 +37,14 @@ def fitted_size(size: tuple[int, int], max_width: int | None) -> tuple[int, int]
 
 
 def shrink(pixels: Pixels, max_width: int | None) -> Pixels:
-    """Shrink to `max_width` by averaging over areas; valid stays what is wholly valid."""
+    """Shrink to `max_width` by area averaging; only completely valid pixels stay valid."""
     height, width = pixels.bgr.shape[:2]
     size = fitted_size((width, height), max_width)
     return pixels if size == (width, height) else resize(pixels, size)
 
 
 def resize(pixels: Pixels, size: tuple[int, int]) -> Pixels:
-    """Resize to (width, height): by area where it shrinks, bilinear where it grows."""
+    """Resize to (width, height): area averaging if it shrinks, bilinear if it grows."""
     interpolation = cv2.INTER_AREA if size[0] < pixels.bgr.shape[1] else cv2.INTER_LINEAR
     bgr: Any = cv2.resize(pixels.bgr, size, interpolation=interpolation)
     if pixels.valid is None:
@@ -56,7 +56,7 @@ def resize(pixels: Pixels, size: tuple[int, int]) -> Pixels:
 def equalize_luminance(pixels: Pixels, how: str) -> Pixels:
     """Normalise the illumination: ``none``, ``histogram`` or ``clahe`` (clip limit 2, 8x8 tiles).
 
-    Only the luminance (Y of YCrCb) is changed; colours keep their hue.
+    Only the luminance (Y of YCrCb) changes; colours keep their hue.
     """
     if how == "none":
         return pixels
@@ -76,10 +76,10 @@ def _equalized(plane: NDArray[np.uint8], how: str) -> Any:
 
 
 def scale_matrix(before: tuple[int, int], after: tuple[int, int]) -> NDArray[np.float64]:
-    """Pixel coordinates after resizing, from those before, as a (3, 3) matrix.
+    """(3, 3) matrix from pixel coordinates before resizing to those after.
 
-    Sizes are (width, height). The *areas* of the pictures coincide, so with pixel centres at
-    integers x' = s (x + 0.5) - 0.5: the half pixel is scaled along.
+    Sizes are (width, height). The *areas* of the images coincide; with pixel centres at integers,
+    x' = s (x + 0.5) - 0.5.
     """
     sx, sy = after[0] / before[0], after[1] / before[1]
     return np.array(

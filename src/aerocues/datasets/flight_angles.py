@@ -1,4 +1,4 @@
-"""Angles of a camera in flight, and the axes of the world, as AirSim and gimbals have them."""
+"""Camera angles and world axes in the conventions of AirSim and gimbals."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 ENU_FROM_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-"""From north, east, down to east, north, up; and back, being its own inverse."""
+"""From north, east, down to east, north, up; it is its own inverse."""
 
 _BODY_TO_CAMERA = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """From body axes (x forward, y right, z down) to the camera's (x right, y down, z forward)."""
@@ -20,7 +20,7 @@ def camera_from_ned(pitch: float, yaw: float, roll: float) -> NDArray[np.float64
     Parameters
     ----------
     pitch, yaw, roll : float
-        Degrees. Pitch 0 looks at the horizon, -90 at the ground; yaw 0 is north, 90 is east.
+        Degrees. Pitch 0 is horizontal, -90 straight down; yaw 0 is north, 90 is east.
 
     Returns
     -------

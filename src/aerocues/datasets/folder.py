@@ -1,4 +1,4 @@
-"""Images in folders: found, named, in natural order; datasets made of them."""
+"""Images in folders, named and in natural order, and datasets of them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from aerocues.errors import DatasetError
 
 
 def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Sort key under which ``img2`` stands before ``img10``, whatever the case of letters."""
+    """Sort key that puts ``img2`` before ``img10``, ignoring case."""
     parts = re.split(r"([0-9]+)", name.casefold())
     keyed = ((i % 2, int(part) if i % 2 else 0, part) for i, part in enumerate(parts))
     return (*keyed, (0, 0, name))
@@ -25,7 +25,7 @@ def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
 def image_paths(folder: Path, *, tree: bool = False) -> list[Path]:
     """Image files of a folder (or of all folders below it), by suffix, in natural order.
 
-    Hidden files are no images: some systems put a ``._NAME.jpg`` beside every ``NAME.jpg``.
+    Hidden files are skipped: some systems create a ``._NAME.jpg`` for every ``NAME.jpg``.
     """
     try:
         found = list(folder.rglob("*") if tree else folder.iterdir())
@@ -55,12 +55,12 @@ def subfolders(folder: Path) -> list[Path]:
 
 
 def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Image]:
-    """Images of files, named by their path relative to `root`, with GPS where EXIF has it.
+    """Images of files, named by their path relative to `root`, with GPS from EXIF if present.
 
     Raises
     ------
     DatasetError
-        If the options choose a subset and no file is in it.
+        If the subset of the options has no file.
     """
     names = {path.relative_to(root).as_posix(): path for path in paths}
     chosen = {name: path for name, path in names.items() if options.takes(name)}
@@ -81,7 +81,7 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
 
 
 def chosen_pairs(options: Options) -> tuple[PairStrategy, str]:
-    """The pair strategy asked for, consecutive by default, and its text for the records."""
+    """The pair strategy of the options (consecutive by default), and its text form."""
     if options.pairs is None:
         return Consecutive(), "consecutive"
     return parse_pairs(options.pairs), options.pairs
@@ -93,23 +93,23 @@ def open_folder(folder: Path, options: Options) -> Dataset:
     Raises
     ------
     DatasetError
-        If there are fewer than two images, or the pairs cannot be made.
+        If there are fewer than two images, or the pairs cannot be formed.
     """
     return _one_scene(folder, folder_images(folder, options), options)
 
 
 def open_flight(folder: Path, options: Options) -> Dataset:
-    """The images of a flight: of a folder and of all folders below it, in order of their names."""
+    """The images of a flight: of a folder and all folders below it, sorted by name."""
     return _one_scene(folder, folder_images(folder, options, tree=True), options)
 
 
 def folder_images(folder: Path, options: Options, *, tree: bool = False) -> list[Image]:
-    """Two or more images of a folder, or of all folders below it.
+    """The images (at least two) of a folder, or of all folders below it.
 
     Raises
     ------
     DatasetError
-        If there are fewer.
+        If there are fewer than two.
     """
     paths = image_paths(folder, tree=tree)
     images = file_images(paths, folder, options)
@@ -129,7 +129,7 @@ def scene_of(
     pairs: Iterable[Names],
     settings: tuple[tuple[str, str], ...],
 ) -> Dataset:
-    """The dataset of a folder's images, all of one scene."""
+    """The dataset of images of one scene."""
     name = folder.resolve().name or "folder"
     numbered = [Pair(i, first, second, name) for i, (first, second) in enumerate(pairs)]
     return Dataset(name, images, numbered, "epipolar", settings)
@@ -137,8 +137,8 @@ def scene_of(
 
 def _too_few(folder: Path, names: Sequence[str]) -> str:
     if names:
-        return f"{folder} holds one image only ({names[0]}); two or more make a pair: add some"
-    message = f"{folder} holds no images ({', '.join(sorted(SUFFIXES))}); "
+        return f"{folder} has only one image ({names[0]}); a pair needs two: add some"
+    message = f"{folder} has no images ({', '.join(sorted(SUFFIXES))}); "
     inside = [child.name for child in subfolders(folder) if image_paths(child)]
     if inside:
         return f"{message}give one of its folders ({inside[0]}), uav:{folder} or flight:{folder}"

@@ -1,4 +1,4 @@
-"""Geometric changes of a picture with their exact homographies: rotation, scale, tilt."""
+"""Geometric transformations of an image with exact homographies: rotation, scale, tilt."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ Matrix = NDArray[np.float64]
 Size = tuple[int, int]
 
 _FOCAL_LENGTH = 1.2
-"""Of the camera that sees a tilted picture, in units of the picture's longer side."""
+"""Focal length of the camera of tilted images, in units of the image's longer side."""
 
 
 @dataclass(frozen=True)
 class Warp:
-    """How a kind of geometric change is computed.
+    """A kind of geometric transformation.
 
     Parameters
     ----------
     place : callable
-        Gives the (3, 3) matrix from the old to the new pixel coordinates (pixel centres at
-        integers) and the new size (width, height), from the value and the old size.
+        Returns the (3, 3) matrix from old to new pixel coordinates (pixel centres at integers) and
+        the new size (width, height), from the value and the old size.
     oversampling : int
-        The picture is warped at this many times its size and averaged down, so that what
-        becomes smaller does not alias; 1: bilinear interpolation only.
+        The image is warped at this multiple of its size and averaged down, against aliasing of
+        shrunk parts; 1: only bilinear interpolation.
     """
 
     place: Callable[[float, Size], tuple[Matrix, Size]]
@@ -40,8 +40,8 @@ class Warp:
 
 
 def _rotated(degrees: float, size: Size) -> tuple[Matrix, Size]:
-    """Counter-clockwise about the centre, the canvas enlarged to hold everything."""
-    # A quarter turn must hit the pixel grid exactly: no 6e-17 in place of 0.
+    """Counter-clockwise about the centre, on a canvas that contains the whole image."""
+    # Rounded, so that a quarter turn hits the pixel grid exactly (0 and not 6e-17).
     cos = round(math.cos(math.radians(degrees)), 15)
     sin = round(math.sin(math.radians(degrees)), 15)
     width, height = size
@@ -53,13 +53,13 @@ def _rotated(degrees: float, size: Size) -> tuple[Matrix, Size]:
 
 
 def _scaled(factor: float, size: Size) -> tuple[Matrix, Size]:
-    """To the nearest whole size; the matrix has the factors that result, an axis each."""
+    """To the nearest integer size; the matrix has the resulting factor of each axis."""
     new_size = max(1, round(size[0] * factor)), max(1, round(size[1] * factor))
     return scale_matrix(size, new_size), new_size
 
 
 def _tilted(degrees: float, size: Size) -> tuple[Matrix, Size]:
-    """The picture as a plane that turns about its horizontal middle line before a camera."""
+    """The image as a plane that a camera sees rotated about its horizontal middle line."""
     width, height = size
     cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     focal = _FOCAL_LENGTH * max(size)
@@ -84,11 +84,11 @@ WARPS = {
     "scale": Warp(_scaled),
     "tilt": Warp(_tilted, oversampling=3),
 }
-"""Kinds of geometric change; their values are degrees, a factor, degrees."""
+"""Kinds of geometric transformation; their values are degrees, a factor, degrees."""
 
 
 def placement(kind: str, value: float, size: Size) -> tuple[Matrix, Size]:
-    """The homography of a change and the size (width, height) of what it gives.
+    """The homography of a transformation, and the size (width, height) of its result.
 
     Parameters
     ----------
@@ -103,10 +103,10 @@ def placement(kind: str, value: float, size: Size) -> tuple[Matrix, Size]:
 
 
 def warp(pixels: Pixels, kind: str, value: float) -> Pixels:
-    """Apply a change; the border it leaves is black and not valid."""
+    """Apply a transformation; pixels outside the original are black and not valid."""
     height, width = pixels.bgr.shape[:2]
     matrix, size = placement(kind, value, (width, height))
-    if kind == "scale":  # resizing averages over areas where it shrinks, and leaves no border
+    if kind == "scale":  # resizing averages over areas if it shrinks, and has no border
         return resize(pixels, size)
     mask = np.ones((height, width), np.bool_) if pixels.valid is None else pixels.valid
     bgr = _warped(pixels.bgr, matrix, size, WARPS[kind].oversampling)

@@ -1,4 +1,4 @@
-"""GPS positions: from EXIF, and as metres in a local plane."""
+"""GPS positions from EXIF, and in metres in a local frame."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FLATTENING = 1 / 298.257223563
 
 
 def read_gps(path: Path) -> GpsPosition | None:
-    """The position in the EXIF data of an image file; None where there is none that makes sense.
+    """The position in the EXIF data of an image file; None if there is no valid one.
 
     Latitude and longitude both exactly 0 mean that the receiver had no fix.
     """
@@ -34,7 +34,7 @@ def read_gps(path: Path) -> GpsPosition | None:
 
 
 def position_from_tags(tags: Mapping[int, Any]) -> GpsPosition | None:
-    """The position that a GPS directory of EXIF gives, or None."""
+    """The position in a GPS directory of EXIF, or None."""
     latitude = _degrees(tags.get(_LATITUDE), tags.get(_LATITUDE_REF), "S")
     longitude = _degrees(tags.get(_LONGITUDE), tags.get(_LONGITUDE_REF), "W")
     if latitude is None or longitude is None or (latitude == 0 and longitude == 0):
@@ -75,14 +75,14 @@ def east_north_up(
     Parameters
     ----------
     positions : sequence of GpsPosition
-        An altitude that is missing counts as the origin's.
+        A missing altitude counts as the origin's.
     origin : GpsPosition, optional
-        Default: the first position.
+        By default the first position.
 
     Returns
     -------
     (N, 3) float64
-        Exact on the WGS84 ellipsoid: by earth-centred coordinates and a rotation.
+        Exact on the WGS84 ellipsoid, by earth-centred coordinates and a rotation.
     """
     if not positions:
         return np.empty((0, 3))

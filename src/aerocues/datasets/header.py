@@ -1,4 +1,4 @@
-"""What an image file says about itself before its pixels are decoded: format, size, orientation."""
+"""Headers of image files, read without decoding pixels: format, size, orientation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aerocues.errors import ImageError
 SUFFIXES = frozenset(
     {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp", ".ppm", ".pgm", ".pnm"}
 )
-"""Suffixes (in any case) by which images are found in a folder."""
+"""Suffixes (in any case) of image files."""
 
 _SIGNATURES = (
     ("JPEG", (b"\xff\xd8\xff",)),
@@ -52,7 +52,7 @@ class Header:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height as the picture is to be seen."""
+        """Width and height of the upright image."""
         if self.orientation >= 5:
             return self.stored_height, self.stored_width
         return self.stored_width, self.stored_height
@@ -64,29 +64,29 @@ class Header:
 
     @property
     def gray(self) -> bool:
-        """Whether there is one channel only, alpha aside."""
+        """Whether there is only one channel, apart from alpha."""
         return self.mode in _GRAY_MODES or self.mode.startswith("I")
 
 
 def read_header(file: Path | bytes, name: str) -> Header:
-    """Read the header of an image file, given by its path or its content.
+    """Read the header of an image file from its path or content.
 
     Raises
     ------
     ImageError
-        If the file cannot be opened or is not an image of a known format; `name` is in the message.
+        If the file cannot be opened or is not an image of a known format; the message has `name`.
     """
     return _read(file, name, _parse)
 
 
 def read_exif_directory(file: Path, directory: int) -> dict[int, Any]:
-    """The tags of one directory in the EXIF data of an image file; empty where there is none.
+    """The tags of one directory in the EXIF data of an image file; empty if there is none.
 
-    Raises ImageError as `read_header` does, and where the EXIF data are broken.
+    Raises ImageError like `read_header`, and if the EXIF data are broken.
     """
 
     def parse(stream: IO[bytes]) -> dict[int, Any]:
-        # Here and not later: that of TIFF is read from the file when it is asked for.
+        # Read while the file is open: TIFF reads its tags on access.
         return dict(_exif(_open(stream)[1]).get_ifd(directory))
 
     return _read(file, str(file), parse)
@@ -108,15 +108,15 @@ def _read(file: Path | bytes, name: str, parse: Callable[[IO[bytes]], _Result]) 
 
 
 def unreadable(name: str, error: OSError) -> str:
-    """The message for a file that the system refuses to read."""
+    """The message for a file that the operating system cannot read."""
     reason = error.strerror or str(error)
-    return f"cannot read {name}: {reason}; check that it exists and that you may read it"
+    return f"cannot read {name}: {reason}; check that it exists and is readable"
 
 
 def _not_an_image(name: str) -> ImageError:
     return ImageError(
-        f"{name} is not an image that can be read; "
-        "JPEG, PNG, TIFF, BMP, WebP and PPM/PGM are: convert it, or take it out of the folder"
+        f"{name} is not a readable image (JPEG, PNG, TIFF, BMP, WebP or PPM/PGM); convert it, or "
+        "remove it from the folder"
     )
 
 
@@ -133,18 +133,18 @@ def _parse(stream: IO[bytes]) -> Header:
 
 
 def _open(stream: IO[bytes]) -> tuple[str, Any]:
-    """The format and Pillow's reader, with the header read and no pixels."""
+    """The format and Pillow's reader, after reading the header only."""
     name = _format(stream.read(16))
     stream.seek(0)
-    # The readers are called directly: Image.open refuses images above a size that is global state,
-    # and opens some camera JPEGs as a series of pictures.
+    # Readers are called directly: Image.open refuses images above a size in global state, and opens
+    # some camera JPEGs as a series of images.
     return name, _reader(name)(stream)
 
 
 def _exif(image: Any) -> Any:
     from PIL import Image
 
-    # Not image.getexif(): that of PNG decodes all pixels to look behind them.
+    # Not image.getexif(): for PNG it decodes all pixels to find EXIF behind them.
     return Image.Image.getexif(image)
 
 

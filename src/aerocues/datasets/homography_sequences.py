@@ -1,4 +1,4 @@
-"""Oxford and HPatches: sequences of images of a plane, with homographies from the first one."""
+"""Oxford and HPatches: image sequences with homographies from the first image."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from aerocues.errors import DatasetError, ImageError
 
 @dataclass(frozen=True)
 class Layout:
-    """How a benchmark names its files.
+    """The file names of a benchmark.
 
     Parameters
     ----------
     name : str
-        Of the benchmark; the dataset is called so.
+        Name of the benchmark and of the dataset.
     image : str
-        Regular expression of an image's name without suffix; its group is the image's number.
+        Regular expression for the stem of an image; its group is the image's number.
     homography : str
         Name of the file with the homography from image 1 to image {number}.
     """
@@ -41,17 +41,17 @@ HPATCHES = Layout("hpatches", r"(\d+)", "H_1_{number}")
 
 
 def open_oxford(folder: Path, options: Options) -> Dataset:
-    """Oxford affine covariant sequences (Mikolajczyk et al., IJCV 2005), image 1 with each other.
+    """Oxford affine covariant sequences (Mikolajczyk et al., IJCV 2005): image 1 with the others.
 
-    `folder` holds the sequences, or is one. Raises DatasetError where files are missing or bad.
+    `folder` contains the sequences, or is one. Raises DatasetError if files are missing or invalid.
     """
     return _open(OXFORD, folder, options)
 
 
 def open_hpatches(folder: Path, options: Options) -> Dataset:
-    """HPatches sequences (Balntas et al., CVPR 2017), image 1 with each other one.
+    """HPatches sequences (Balntas et al., CVPR 2017): image 1 with each of the others.
 
-    `folder` holds the sequences, or is one. Raises DatasetError where files are missing or bad.
+    `folder` contains the sequences, or is one. Raises DatasetError if files are missing or invalid.
     """
     return _open(HPATCHES, folder, options)
 
@@ -64,8 +64,8 @@ def _open(layout: Layout, folder: Path, options: Options) -> Dataset:
     if not sequences:
         homography = layout.homography.format(number=2)
         raise DatasetError(
-            f"{folder} holds no {layout.name} sequence (folders with images 1, 2, ... and files "
-            f"{homography}, ...); `aerocues datasets fetch {layout.name} --to DIR` gets them"
+            f"{folder} has no {layout.name} sequence (folders with images 1, 2, ... and files "
+            f"{homography}, ...); `aerocues datasets fetch {layout.name} --to DIR` downloads them"
         )
     images: list[Image] = []
     pairs: list[Pair] = []
@@ -78,7 +78,7 @@ def _open(layout: Layout, folder: Path, options: Options) -> Dataset:
 
 
 def _numbered(layout: Layout, folder: Path) -> dict[int, Path]:
-    """Images of a sequence by number; of several files with one number the first by name."""
+    """Images of a sequence by number; of several files with the same number the first by name."""
     numbered: dict[int, Path] = {}
     for path in image_paths(folder):
         if match := re.fullmatch(layout.image, path.stem):
@@ -94,7 +94,7 @@ def _sequence(
 ) -> tuple[list[Image], list[PairFields]]:
     paths = _numbered(layout, folder)
     if 1 not in paths or len(paths) < 2:
-        raise DatasetError(f"the sequence {folder} lacks image 1 or all others; fetch it again")
+        raise DatasetError(f"the sequence {folder} needs image 1 and others; download it again")
     name = folder.resolve().name
     images = {
         number: Image(
@@ -117,18 +117,18 @@ def _scale(image: Image) -> NDArray[np.float64]:
         return np.eye(3)
     try:
         original = source.original_size()
-    except ImageError:  # an error of the pairs with this image, told when it is read
+    except ImageError:  # an error of the pairs with this image, raised when it is read
         return np.eye(3)
     return scale_matrix(original, fitted_size(original, source.max_width))
 
 
 def read_homography(path: Path) -> NDArray[np.float64]:
-    """A (3, 3) matrix from a text file with nine numbers.
+    """Read a (3, 3) matrix from a text file with nine numbers.
 
     Raises
     ------
     DatasetError
-        If the file is missing, or does not hold an invertible matrix of nine numbers.
+        If the file is missing, or is not an invertible matrix of nine numbers.
     """
     try:
         numbers = [float(word) for word in path.read_text(encoding="ascii").split()]
@@ -138,8 +138,8 @@ def read_homography(path: Path) -> NDArray[np.float64]:
         numbers = []
     matrix = np.array(numbers, dtype=np.float64)
     if matrix.size != 9 or not np.isfinite(matrix).all():
-        raise DatasetError(f"{path} does not hold nine numbers; fetch the sequence again")
+        raise DatasetError(f"{path} does not have nine numbers; download the sequence again")
     matrix = matrix.reshape(3, 3)
     if abs(np.linalg.det(matrix)) < 1e-12 or matrix[2, 2] == 0:
-        raise DatasetError(f"{path} does not hold a homography; fetch the sequence again")
+        raise DatasetError(f"{path} is not an invertible homography; download the sequence again")
     return matrix

@@ -1,6 +1,6 @@
-"""Finds files that were cut off or damaged in their structure, without decoding them.
+"""Finds truncated or damaged files by their structure, without decoding them.
 
-OpenCV fills what is missing in a truncated JPEG or PNG with gray and says nothing.
+OpenCV fills the missing part of a truncated JPEG or PNG with gray, without an error.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ _WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD9)})
 
 
 def find_damage(data: bytes, image_format: str) -> str | None:
-    """What is wrong with the structure of a file, or None.
+    """A description of the damage in the structure of a file, or None.
 
     Parameters
     ----------
     data : bytes
         The whole file.
     image_format : str
-        As in `Header.format`. JPEG is followed from segment to segment to its end marker, PNG from
-        chunk to chunk with the checksums; decoders are strict enough about the other formats.
+        As in `Header.format`. JPEG is checked segment by segment up to its end marker, PNG chunk by
+        chunk with checksums; for other formats the decoders are strict enough.
     """
     if image_format == "JPEG":
         return _jpeg_damage(data)
@@ -33,7 +33,7 @@ def find_damage(data: bytes, image_format: str) -> str | None:
 
 
 def _jpeg_damage(data: bytes) -> str | None:
-    # Thumbnails in the EXIF segment have end markers of their own: hence segment by segment.
+    # Segment by segment, because thumbnails in the EXIF segment have end markers, too.
     position = 2
     while (found := _NEXT_MARKER.search(data, position)) is not None:
         marker, position = data[found.end() - 1], found.end()

@@ -25,29 +25,29 @@ class DatasetKind:
     name : str
         Word before the colon of a dataset's text form.
     form : str
-        How to write it.
+        Text form.
     pairs : str
         Which images are paired.
     ground_truth : str
-        What is known to be true.
+        Available ground truth.
     needs : str
-        What must be there.
+        Required files.
     layout : str
-        How the files lie.
+        Arrangement of the files.
     geometry : str
         ``homography`` or ``epipolar``.
     where : str
-        Where to get it.
+        Source of the files.
     terms : str
         Terms of use of the images.
     load : callable
-        Opens it, from the path after the colon (None: none given) and the options.
+        Opens it, from the path after the colon (None if there is none) and the options.
     takes_pairs : bool
         Whether the user may choose the pairs.
     target : str or None
-        What stands after the colon, ``DIR`` or ``IMAGE``.
+        What follows the colon: ``DIR`` or ``IMAGE``.
     target_required : bool
-        Whether there must be one.
+        Whether the target is required.
     """
 
     name: str
@@ -82,11 +82,11 @@ CATALOG: tuple[DatasetKind, ...] = (
         form="synthetic[:IMAGE]",
         pairs="original with each of 20 transformations: rotation, scale, intensity",
         ground_truth="exact homographies",
-        needs="nothing, or an image of yours",
+        needs="nothing, or one of your images",
         layout="one image file",
         geometry="homography",
-        where="drawn by aerocues",
-        terms="Apache-2.0 (the drawn image)",
+        where="part of aerocues",
+        terms="Apache-2.0 (the image in aerocues)",
         load=lambda image, options: open_synthetic(image, options, "synthetic"),
         takes_pairs=False,
         target="IMAGE",
@@ -95,13 +95,13 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="synthetic-extended",
         form="synthetic-extended[:IMAGE]",
-        pairs="original with each of 47: rotation to 180, contrast, noise, blur, JPEG, tilt too",
+        pairs="original with each of 47: also rotation to 180, contrast, noise, blur, JPEG, tilt",
         ground_truth="exact homographies",
-        needs="nothing, or an image of yours",
+        needs="nothing, or one of your images",
         layout="one image file",
         geometry="homography",
-        where="drawn by aerocues",
-        terms="Apache-2.0 (the drawn image)",
+        where="part of aerocues",
+        terms="Apache-2.0 (the image in aerocues)",
         load=lambda image, options: open_synthetic(image, options, "synthetic-extended"),
         takes_pairs=False,
         target="IMAGE",
@@ -116,7 +116,7 @@ CATALOG: tuple[DatasetKind, ...] = (
         layout="DIR/graf/img1.ppm ... img6.ppm, H1to2p ... H1to6p (also .png, .pgm, .jpg)",
         geometry="homography",
         where="aerocues datasets fetch oxford --to DIR",
-        terms="not stated by the authors; used everywhere for research",
+        terms="not stated by the authors; widely used in research",
         load=_in_folder(open_oxford),
         takes_pairs=False,
     ),
@@ -150,7 +150,7 @@ CATALOG: tuple[DatasetKind, ...] = (
         name="flight",
         form="flight:DIR",
         pairs="consecutive by name; others with --pairs",
-        ground_truth="GPS positions from EXIF, where there are any",
+        ground_truth="GPS positions from EXIF, if present",
         needs="the images of one flight, in a folder or a tree of folders",
         layout="DIR/**/*.jpg",
         geometry="epipolar",
@@ -164,7 +164,7 @@ CATALOG: tuple[DatasetKind, ...] = (
         form="simulated:DIR",
         pairs="consecutive by name in each folder; others with --pairs",
         ground_truth="exact poses, intrinsics and depth",
-        needs="a flight that aerocues simulate has made",
+        needs="a flight made by aerocues simulate",
         layout="DIR/**/*.png (.jpg), DIR/truth/poses.csv, camera.json, depth/**/*.npy",
         geometry="epipolar",
         where="aerocues simulate -o DIR",
@@ -177,7 +177,7 @@ CATALOG: tuple[DatasetKind, ...] = (
         form="airsim:DIR",
         pairs="consecutive by name in each folder; others with --pairs",
         ground_truth="exact poses, intrinsics and depth",
-        needs="a flight that aerocues airsim collect has made",
+        needs="a flight made by aerocues airsim collect",
         layout="as a simulated flight",
         geometry="epipolar",
         where="aerocues airsim collect -o DIR",
@@ -189,7 +189,7 @@ CATALOG: tuple[DatasetKind, ...] = (
         name="folder",
         form="DIR",
         pairs="consecutive by name; others with --pairs",
-        ground_truth="none; GPS positions where EXIF has them",
+        ground_truth="none; GPS positions from EXIF, if present",
         needs="any folder with two or more images",
         layout="DIR/*.jpg (.png, .tif, .bmp, .webp, .ppm, .pgm)",
         geometry="epipolar",

@@ -1,4 +1,4 @@
-"""What a user asks of a dataset, whichever kind it is."""
+"""Options for opening a dataset of any kind."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aerocues.datasets.fitting import check_settings
 
 @dataclass(frozen=True)
 class Options:
-    """How images are paired and read.
+    """Options for pairing and reading images.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Options:
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
     subset : str or None
-        Only images whose name or folder matches one of these globs, in any case; None: all.
+        Use only images whose name or folder matches one of these globs, ignoring case; None: all.
     """
 
     pairs: str | None = None
@@ -34,13 +34,13 @@ class Options:
         check_settings(self.max_width, self.equalize)
 
     def settings(self, **more: str) -> tuple[tuple[str, str], ...]:
-        """The options as `Dataset.settings` records them, and what the kind of dataset adds."""
+        """The options for `Dataset.settings`, with further ones of the kind of dataset."""
         width = "full" if self.max_width is None else str(self.max_width)
         chosen = {} if self.subset is None else {"subset": self.subset}
         return (*more.items(), *chosen.items(), ("max_width", width), ("equalize", self.equalize))
 
     def takes(self, name: str) -> bool:
-        """Whether an image of this name, relative to the dataset's folder, is among the chosen."""
+        """Whether the subset includes an image of this name (relative to the dataset's folder)."""
         if self.subset is None:
             return True
         folders = accumulate(name.lower().split("/"), lambda path, part: f"{path}/{part}")

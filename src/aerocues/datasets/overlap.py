@@ -1,4 +1,4 @@
-"""How much two images truly share, by their poses and depth; pairs chosen by it."""
+"""True overlap of two images from poses and depth, and pairs chosen by it."""
 
 from __future__ import annotations
 
@@ -13,17 +13,19 @@ from aerocues.datasets.true_geometry import Array, Located, find_seen, inverse_d
 from aerocues.errors import DatasetError
 
 _SAMPLES = (24, 16)
-"""Points along the width and the height of an image at which overlap is measured."""
+"""Points along the width and height of an image at which overlap is measured: more are more exact,
+and slower."""
 
 
 @dataclass(frozen=True)
 class Overlapping:
-    """Every two images of which the one shows a share of the other between two limits.
+    """All pairs of images whose overlap is between two limits.
 
     Parameters
     ----------
     least, most : float
-        Of the smaller of the two shares; what something else hides is not shown.
+        Limits of the overlap: the smaller share of one image that is visible in the other. Occluded
+        parts do not count.
     """
 
     least: float
@@ -35,7 +37,7 @@ class Overlapping:
         Raises
         ------
         DatasetError
-            If images have no true depth, or no two images share so much.
+            If images have no true depth, or no two images overlap by so much.
         """
         views = [_sampled(image) for image in images]
         found = [
@@ -53,7 +55,7 @@ class Overlapping:
 
 @dataclass(frozen=True, eq=False)
 class _Sampled:
-    """A view, points spread over it, and a sphere around what they show."""
+    """A view, points spread over it, and a sphere around the visible surface."""
 
     located: Located
     points: Array
@@ -82,7 +84,7 @@ def _sampled(image: Image) -> _Sampled:
 
 
 def _sphere(located: Located, points: Array) -> tuple[Array, float]:
-    """Around the surface that points show; without end where they show the sky."""
+    """Sphere around the surface at the points; infinite if a point is in the sky."""
     view, camera = located.view, located.view.camera
     _, inverse = inverse_depths(points, located.inverse)
     rays = np.column_stack(
@@ -103,7 +105,7 @@ def _sphere(located: Located, points: Array) -> tuple[Array, float]:
 
 
 def _shared(first: _Sampled, second: _Sampled) -> float:
-    """Share of an image that the other one shows, the smaller of both ways: 0 to 1."""
+    """Share of an image that is visible in the other, the smaller of both directions: 0 to 1."""
     forth = find_seen(first.points, first.located, second.located)[1].mean()
     if not forth:
         return 0.0

@@ -1,4 +1,4 @@
-"""Which images of a folder are matched with which: strategies as data, and their text form."""
+"""Strategies that choose image pairs, and their text form."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ FORMS = (
 
 
 class PairStrategy(Protocol):
-    """Chooses pairs among images that come in order."""
+    """Chooses pairs among ordered images."""
 
     def pairs(self, images: Sequence[Image]) -> list[Names]:
-        """Names of the images to match, in order, no pair twice.
+        """Names of the images to match, in order, without duplicates.
 
         Raises
         ------
         DatasetError
-            If the images lack what the strategy needs.
+            If the images do not have what the strategy needs.
         """
 
 
 @dataclass(frozen=True)
 class Consecutive:
-    """Each image with its next `neighbours` ones."""
+    """Each image with the next `neighbours` images."""
 
     neighbours: int = 1
 
@@ -54,7 +54,7 @@ class Consecutive:
 
 @dataclass(frozen=True)
 class Exhaustive:
-    """Every two images."""
+    """All pairs of images."""
 
     def pairs(self, images: Sequence[Image]) -> list[Names]:
         return list(combinations([image.name for image in images], 2))
@@ -62,14 +62,14 @@ class Exhaustive:
 
 @dataclass(frozen=True)
 class GpsNeighbours:
-    """Images taken near each other: horizontal distance by GPS.
+    """Images taken close to each other: horizontal distance by GPS.
 
     Parameters
     ----------
     nearest : int
-        Each image with its nearest ones; used where `radius` is None.
+        Each image with its nearest neighbours; used if `radius` is None.
     radius : float or None
-        Metres: every two images that are at most so far apart.
+        All pairs of images within this distance in metres.
     """
 
     nearest: int = GPS_NEIGHBOURS
@@ -91,7 +91,7 @@ class GpsNeighbours:
                 for j in [other for other in row if other != i][: self.nearest]
             }
         if not found:
-            raise DatasetError(f"no two images lie within {self.radius} m; give a larger radius")
+            raise DatasetError(f"no two images are within {self.radius} m; give a larger radius")
         return [(images[i].name, images[j].name) for i, j in sorted(found)]
 
 
@@ -107,10 +107,10 @@ def _horizontal_positions(images: Sequence[Image]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class PairsFile:
-    """Pairs listed in a text file: two names a line, separated by blanks or a tab.
+    """Pairs listed in a text file: two names per line, separated by blanks or a tab.
 
-    Names with blanks stand in double quotes (or the line has a tab). ``#`` begins a comment at the
-    start of a line or after a blank. A pair that is listed again is taken once.
+    Names with blanks need double quotes (or a tab in the line). ``#`` begins a comment at the start
+    of a line or after a blank. A repeated pair counts once.
     """
 
     path: Path
@@ -124,7 +124,7 @@ class PairsFile:
             ) from error
         except UnicodeDecodeError as error:
             raise DatasetError(
-                f"the pairs file {self.path} is not text in UTF-8; save it as such"
+                f"the pairs file {self.path} is not UTF-8 text; save it as UTF-8"
             ) from error
         return parse_pairs_file(text, [image.name for image in images], str(self.path))
 
@@ -135,8 +135,8 @@ def parse_pairs_file(text: str, names: Sequence[str], where: str = "pairs file")
     Raises
     ------
     DatasetError
-        If a line does not hold two different names out of `names`; all such lines are in the
-        message (five of them at most are spelled out), with their numbers.
+        If a line does not have two different names of `names`; the message lists the first five
+        such lines with their numbers.
     """
     known = set(names)
     pairs: dict[Names, None] = {}
@@ -154,10 +154,10 @@ def parse_pairs_file(text: str, names: Sequence[str], where: str = "pairs file")
         rest = f"; and {len(faults) - 5} more" if len(faults) > 5 else ""
         raise DatasetError(
             f"{where} has {len(faults)} bad line{'s' * (len(faults) > 1)}: "
-            f"{'; '.join(faults[:5])}{rest}; write two names of images a line"
+            f"{'; '.join(faults[:5])}{rest}; write two image names per line"
         )
     if not pairs:
-        raise DatasetError(f"{where} lists no pairs; write two names of images a line")
+        raise DatasetError(f"{where} lists no pairs; write two image names per line")
     return list(pairs)
 
 
@@ -204,7 +204,7 @@ _PATTERNS: tuple[tuple[str, Callable[[str], PairStrategy]], ...] = (
 
 
 def parse_pairs(text: str) -> PairStrategy:
-    """The strategy that a text names, such as ``consecutive:3``, ``gps:50m`` or a path.
+    """The strategy of a text form, such as ``consecutive:3``, ``gps:50m`` or a path.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Changes of a picture that leave every point in its place: light, contrast, noise, blur, JPEG."""
+"""Photometric transformations of an image: intensity, contrast, noise, blur, JPEG."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 Bgr = NDArray[np.uint8]
 Change = Callable[[Bgr, float, bool], Bgr]
-"""Gives the changed picture from a picture, a value, and whether its three channels are equal."""
+"""Returns the changed image, from an image, a value, and whether its channels are equal."""
 
 _MIDDLE_GRAY = 128.0
 _NOISE_SEED = 7
@@ -35,7 +35,7 @@ def _contrasted(bgr: Bgr, factor: float, gray: bool) -> Bgr:
 
 
 def _noisy(bgr: Bgr, sigma: float, gray: bool) -> Bgr:
-    """Gaussian noise; the same on the three channels of a gray picture, else on each its own."""
+    """Gaussian noise; the same for all channels of a gray image, else independent per channel."""
     shape = (*bgr.shape[:2], 1 if gray else 3)
     noise = np.random.default_rng(_NOISE_SEED).standard_normal(shape, dtype=np.float32)
     return _clipped(bgr.astype(np.float32) + np.float32(sigma) * noise)
@@ -60,5 +60,5 @@ CHANGES: dict[str, Change] = {
     "blur": _blurred,
     "jpeg": _compressed,
 }
-"""Kinds of change; values: gray levels, factor, factor about middle gray, sigma in gray levels,
-sigma in pixels, quality from 0 to 100."""
+"""Kinds of transformation; values: gray levels, factor, factor about middle gray, sigma in gray
+levels, sigma in pixels, quality from 0 to 100."""

@@ -27,7 +27,7 @@ _TRUTH = "truth"
 
 @dataclass(frozen=True)
 class DepthFile:
-    """Depth in a ``.npy`` file, at the size at which the images are read.
+    """Depth in a ``.npy`` file, at the size of the images as read.
 
     Parameters
     ----------
@@ -40,15 +40,15 @@ class DepthFile:
     size: tuple[int, int]
 
     def read(self) -> NDArray[np.float32]:
-        """Planar depth (H, W) float32 in metres; of shrunk images at the nearest true pixel.
+        """Planar depth (H, W) float32 in metres; shrunk images take the nearest pixel.
 
-        Depth is not averaged: between a roof and the street beside it there is nothing.
+        Depth is not averaged: the mean of a roof and the street next to it is not a surface.
         """
         try:
             stored = np.load(self.path, allow_pickle=False)
         except (OSError, ValueError) as error:
             raise ImageError(
-                f"{self.path} holds no depth ({error}); simulate the flight again"
+                f"{self.path} is not a depth file ({error}); simulate the flight again"
             ) from error
         width, height = self.size
         if stored.shape == (height, width):
@@ -74,12 +74,12 @@ def _nearest(wanted: int, stored: int) -> NDArray[np.intp]:
 
 
 def open_simulated(folder: Path, options: Options) -> Dataset:
-    """The images of a simulated flight, or of a folder inside one, with what is true of them.
+    """The images of a simulated flight, or of a folder inside one, with their ground truth.
 
     Raises
     ------
     DatasetError
-        If there are fewer than two images, or the truth is missing.
+        If there are fewer than two images, or the ground truth is missing.
     """
     root = _root(folder)
     truth = root / _TRUTH
@@ -93,7 +93,7 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
             f"{truth} cannot be read ({why_unreadable(error)}); simulate the flight again"
         ) from error
     except (KeyError, TypeError) as error:
-        raise DatasetError(f"{truth} lacks parts; simulate the flight again") from error
+        raise DatasetError(f"{truth} is incomplete; simulate the flight again") from error
     prefix = folder.resolve().relative_to(root.resolve())
     fitted = scaled_camera(camera, options.max_width)
     images = [
@@ -101,7 +101,7 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         for image in folder_images(folder, options, tree=True)
     ]
     strategy, text = chosen_pairs(options)
-    # From the last image of one view to the first of the next there is nothing consecutive.
+    # The last image of one view and the first of the next are not consecutive.
     views = _by_folder(images) if isinstance(strategy, Consecutive) else [images]
     pairs = [pair for view in views for pair in strategy.pairs(view)]
     if not pairs:
@@ -123,13 +123,13 @@ def _root(folder: Path) -> Path:
         if (parent / _TRUTH / "poses.csv").is_file():
             return parent
     raise DatasetError(
-        f"{folder} has no {_TRUTH}/poses.csv, nor has a folder above it; "
+        f"neither {folder} nor a folder above it has {_TRUTH}/poses.csv; "
         f"make a flight with: aerocues simulate -o {folder}"
     )
 
 
 def scaled_camera(camera: PinholeCamera, max_width: int | None) -> PinholeCamera:
-    """The camera of images that were shrunk to `max_width`; the half pixel is scaled along."""
+    """The camera of images that were shrunk to `max_width`, including the half-pixel offset."""
     size = fitted_size((camera.width, camera.height), max_width)
     scale = scale_matrix((camera.width, camera.height), size)
     centre = scale @ [camera.centre_x, camera.centre_y, 1.0]
@@ -141,7 +141,7 @@ def _with_truth(
     image: Image, name: str, poses: Mapping[str, Any], camera: PinholeCamera, truth: Path
 ) -> Image:
     if name not in poses:
-        raise DatasetError(f"{truth / 'poses.csv'} lacks {name}; simulate the flight again")
+        raise DatasetError(f"{truth / 'poses.csv'} has no {name}; simulate the flight again")
     row = poses[name]
     centre = ENU_FROM_NED @ [float(row[axis]) for axis in ("north", "east", "down")]
     rotation = (

@@ -1,4 +1,4 @@
-"""One image and transformations of it, with the exact homography to each: a table of rows."""
+"""One image and its transformations with exact homographies: one row each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from aerocues.errors import DatasetError
 
 ORIGINAL = "original"
 RECIPE_VERSION = "1"
-"""Part of content keys; raised when a transformation comes to give other pixels."""
+"""Part of content keys; increased when a transformation gives other pixels."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class Transformation:
     sequence : str
         Name of the group of rows.
     kind : str
-        A key of `geometry.WARPS` or `photometry.CHANGES`: what is done.
+        A key of `geometry.WARPS` or `photometry.CHANGES`.
     value : float
-        How much: degrees, factor, gray levels, pixels or quality, as the kind says.
+        Degrees, factor, gray levels, pixels or quality, depending on the kind.
     text : str
         Format of the value in the image's name.
     """
@@ -93,17 +93,17 @@ class TownSource:
     equalize: str = "none"
 
     def read(self) -> Pixels:
-        """The picture at its final size; all of it is valid."""
+        """The image at its final size; all pixels are valid."""
         pixels = shrink(Pixels(_town().copy()), self.max_width)
         return equalize_luminance(pixels, self.equalize)
 
     def size(self) -> tuple[int, int]:
-        """Width and height of the picture that `read` returns."""
+        """Width and height of the image that `read` returns."""
         height, width = _town().shape[:2]
         return fitted_size((width, height), self.max_width)
 
     def is_gray(self) -> bool:
-        """Never."""
+        """False."""
         return False
 
     def content_key(self) -> str:
@@ -119,12 +119,12 @@ class TownSource:
 
 @dataclass(frozen=True)
 class TransformedSource:
-    """A transformation of another source, computed whenever it is read.
+    """A transformation of another source, computed when it is read.
 
     Parameters
     ----------
     original : TownSource or FileSource
-        Not equalised: illumination is normalised last, as it is for a photograph.
+        Not equalised: illumination is normalised last, as for a photograph.
     transformation : str
         Name of a row of `EXTENDED`.
     equalize : str
@@ -136,7 +136,7 @@ class TransformedSource:
     equalize: str = "none"
 
     def read(self) -> Pixels:
-        """The transformed picture; ImageError if the original cannot be decoded."""
+        """The transformed image; ImageError if the original cannot be decoded."""
         row, pixels = _ROWS[self.transformation], self.original.read()
         if row.kind in geometry.WARPS:
             changed = geometry.warp(pixels, row.kind, row.value)
@@ -156,7 +156,7 @@ class TransformedSource:
 
 
 def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic") -> Dataset:
-    """The original against each of its transformations.
+    """Pairs of the original with each of its transformations.
 
     Parameters
     ----------
@@ -193,5 +193,5 @@ def _source(image: Path | None, max_width: int | None, equalize: str) -> TownSou
     if image is None:
         return TownSource(max_width, equalize)
     if image.is_dir():
-        raise DatasetError(f"{image} is a folder; name one image: synthetic:IMAGE")
+        raise DatasetError(f"{image} is a folder; give one image: synthetic:IMAGE")
     return FileSource(image.absolute(), max_width, equalize)

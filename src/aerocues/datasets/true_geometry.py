@@ -1,4 +1,4 @@
-"""Where points of one image lie in another, and whether it shows them: by pose and depth."""
+"""Projects points of one image into another, and tests their visibility, by pose and depth."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from aerocues.datasets.dataset import TrueView
 
 SAME_SURFACE = 0.005
-"""Depths that differ by less than this part of them are of one surface."""
+"""Relative difference of depth below which two points are on the same surface: a larger value
+accepts occluded points, a smaller one rejects steep surfaces."""
 
 Array = NDArray[np.float64]
 Points = NDArray[np.float32] | NDArray[np.float64]
@@ -25,7 +26,7 @@ class Located:
     ----------
     view : TrueView
     inverse : (H, W) float64
-        One over the depth in metres; 0 in the sky, NaN where it is unknown.
+        1 / depth in metres; 0 in the sky, NaN where unknown.
     """
 
     view: TrueView
@@ -33,17 +34,17 @@ class Located:
 
     @classmethod
     def of(cls, view: TrueView) -> Located:
-        """Read the depth of a view that has one; ImageError where that fails."""
+        """Read the depth of a view that has one; ImageError if that fails."""
         assert view.depth is not None
         with np.errstate(divide="ignore"):
             return cls(view, 1.0 / view.depth.read().astype(np.float64))
 
 
 def inverse_depths(points: Points, inverse: Array) -> tuple[Array, Array]:
-    """The nearer and the farther inverse depth of points, the same on a single surface.
+    """The nearer and the farther inverse depth of points; they are equal on a single surface.
 
-    The inverse depth of a plane is linear in the image: between four pixels of one surface it is
-    interpolated. Where they show two surfaces, as on the edge of a roof, a point lies on either.
+    The inverse depth of a plane is linear in the image, so that it is interpolated between four
+    pixels of one surface. On an edge between two surfaces, a point may belong to either.
 
     Parameters
     ----------
@@ -69,25 +70,25 @@ def inverse_depths(points: Points, inverse: Array) -> tuple[Array, Array]:
 
 
 def project(points: Points, inverse: Array, here: TrueView, there: TrueView) -> tuple[Array, Array]:
-    """Where points of one view lie in another.
+    """Project points of one view into another.
 
     Parameters
     ----------
     points : (N, 2)
     inverse : (N,) float64
-        Their inverse depths.
+        Inverse depths of the points.
     here, there : TrueView
 
     Returns
     -------
     (N, 2), (N,) float64
-        Pixels and inverse depths in the other view; NaN behind its camera.
+        Pixels and inverse depths in the other view; NaN behind the camera.
     """
     camera, other = here.camera, there.camera
     column, row = np.asarray(points, np.float64).reshape(-1, 2).T
     x, y = (column - camera.centre_x) / camera.focal_x, (row - camera.centre_y) / camera.focal_y
     rays = np.column_stack([x, y, np.ones(len(x))])
-    # A point over its depth, so that what is infinitely far has a place, too.
+    # Divided by the depth, so that points at infinity can be projected, too.
     world = rays @ here.rotation + inverse[:, None] * (here.centre - there.centre)
     x, y, z = (world @ there.rotation.T).T
     z = np.where(z > 1e-12, z, np.nan)
@@ -96,7 +97,7 @@ def project(points: Points, inverse: Array, here: TrueView, there: TrueView) -> 
 
 
 def find_seen(points: Points, here: Located, there: Located) -> tuple[Array, Mask]:
-    """Where points lie in another view, and whether it shows them.
+    """Project points into another view, and test whether they are visible there.
 
     Parameters
     ----------
@@ -106,7 +107,7 @@ def find_seen(points: Points, here: Located, there: Located) -> tuple[Array, Mas
     Returns
     -------
     (N, 2) float64, (N,) bool
-        Pixels, NaN where they are not seen: outside, behind the camera or behind something else.
+        Pixels, NaN if not visible: outside the image, behind the camera or occluded.
     """
     moved = np.full((len(points), 2), np.nan)
     seen = np.zeros(len(points), np.bool_)
@@ -129,16 +130,16 @@ def _on_surface(at: Array, expected: Array, inverse: Array) -> Mask:
 
 
 def nearest_pixels(points: Array, shape: tuple[int, ...]) -> tuple[NDArray[np.intp], Mask]:
-    """Columns and rows (N, 2) of the pixels nearest to points, and whether they are in the image.
+    """Columns and rows (N, 2) of the nearest pixels, and whether they are inside the image.
 
     Parameters
     ----------
     points : (N, 2) float64
-        NaN lies outside.
+        NaN counts as outside.
     shape : tuple of int
         Height and width.
     """
-    # Far beyond any image all is outside, whether or not an integer can hold it.
+    # Clipped, because distant points could overflow an integer; they are outside anyway.
     finite = np.clip(np.nan_to_num(points, nan=-9.0), -9.0, 1e9)
     rounded = np.floor(finite + 0.5).astype(np.intp)
     inside = (rounded >= 0).all(axis=1) & (rounded < (shape[1], shape[0])).all(axis=1)

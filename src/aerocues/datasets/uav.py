@@ -1,4 +1,4 @@
-"""Pairs of UAV projects: a folder with one folder a project, each with two or more images."""
+"""Pairs of UAV projects: a folder with one folder per project, each with two or more images."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from aerocues.errors import DatasetError
 
 
 def open_uav(folder: Path, options: Options) -> Dataset:
-    """Every project's consecutive images (with two images: one pair a project).
+    """Consecutive images of each project (one pair for a project with two images).
 
-    Folders without images are passed over. A project is a sequence. A pairs file may name images
-    of all projects; a pair belongs to the project of its first image.
+    Folders without images are skipped. Each project is a sequence. A pairs file may list images of
+    all projects; a pair belongs to the project of its first image.
 
     Raises
     ------
     DatasetError
-        If there is no project, or one with a single image, or the pairs cannot be made.
+        If there is no project, a project has a single image, or the pairs cannot be formed.
     """
     strategy, text = chosen_pairs(options)
     projects = _projects(folder, options)
@@ -37,18 +37,18 @@ def open_uav(folder: Path, options: Options) -> Dataset:
 
 
 def _projects(folder: Path, options: Options) -> dict[str, list[Image]]:
-    """The images of each project by its name, which begins theirs."""
+    """The images of each project, by the name of the project."""
     projects: dict[str, list[Image]] = {}
     for project in subfolders(folder):
         paths = image_paths(project)
         if len(paths) == 1:
             raise DatasetError(
-                f"the project {project} holds one image only; add a second or move it away"
+                f"the project {project} has only one image; add a second or move the project away"
             )
         if paths:
             projects[project.name] = file_images(paths, folder, options)
     if not projects:
-        hint = f"; it holds images itself: give it as {folder}" if image_paths(folder) else ""
+        hint = f"; it has images itself: give it as {folder}" if image_paths(folder) else ""
         raise DatasetError(
             f"{folder} has no project folders with two or more images{hint or '; check the path'}"
         )

@@ -1,4 +1,4 @@
-"""Unpacks archives of sequences: nothing lands outside the target, nothing half."""
+"""Unpacks archives of sequences, completely or not at all, and only inside the target."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ Members = Iterator[tuple[str, IO[bytes]]]
 
 
 def unpack_sequences(archive: Path, to: Path, marker: str, single: str) -> list[str]:
-    """Put every sequence of an archive into a folder of its own below `to`.
+    """Unpack every sequence of an archive into its own folder below `to`.
 
     Parameters
     ----------
     archive : Path
         A tar (compressed or not) or zip file.
     to : Path
-        Folder; a sequence that is there already is replaced.
+        Folder; an existing sequence is replaced.
     marker : str
-        Name of a file that each sequence's folder has, however deep it lies in the archive.
+        Name of a file in the folder of each sequence, at any depth in the archive.
     single : str
-        Name of the sequence where its files lie at the top of the archive.
+        Name of the sequence if its files are at the top of the archive.
 
     Returns
     -------
@@ -50,7 +50,7 @@ def unpack_sequences(archive: Path, to: Path, marker: str, single: str) -> list[
     Raises
     ------
     DatasetError
-        If the archive is damaged, holds no sequence, or a member would land outside `to`.
+        If the archive is damaged, has no sequence, or a member would be written outside `to`.
     """
     with tempfile.TemporaryDirectory(dir=to, prefix=".unpacking-") as name:
         place = Path(name)
@@ -60,12 +60,10 @@ def unpack_sequences(archive: Path, to: Path, marker: str, single: str) -> list[
             for file in sorted(place.rglob(marker))
         }
         if not found:
-            raise DatasetError(
-                f"{archive} holds no sequence (no file {marker}); remove it and retry"
-            )
+            raise DatasetError(f"{archive} has no sequence (no file {marker}); remove it and retry")
         for sequence, folder in found.items():
             _put(folder, to / sequence)
-        place.mkdir(exist_ok=True)  # gone where it was the sequence itself
+        place.mkdir(exist_ok=True)  # it was moved if it was the sequence itself
     return sorted(found)
 
 
@@ -83,17 +81,21 @@ def _extract(archive: Path, place: Path) -> None:
             for name, content in members:
                 target = (root / PurePosixPath(name)).resolve()
                 if not target.is_relative_to(root):
-                    raise DatasetError(f"{archive} would write to {name}, outside; do not use it")
+                    raise DatasetError(
+                        f"{archive} would write outside the folder ({name}); do not use it"
+                    )
                 target.parent.mkdir(parents=True, exist_ok=True)
                 with content, target.open("wb") as file:
                     shutil.copyfileobj(content, file)
     except _BROKEN as error:
-        raise DatasetError(f"{archive} is damaged ({error}); remove it and fetch again") from error
+        raise DatasetError(
+            f"{archive} is damaged ({error}); remove it and download it again"
+        ) from error
 
 
 @contextmanager
 def _members(archive: Path) -> Iterator[Members]:
-    """The plain files of an archive; links and devices are passed over."""
+    """The regular files of an archive; links and devices are skipped."""
     if zipfile.is_zipfile(archive):
         with zipfile.ZipFile(archive) as zipped:
             yield ((m.filename, zipped.open(m)) for m in zipped.infolist() if not m.is_dir())
