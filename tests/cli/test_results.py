@@ -196,7 +196,7 @@ def test_a_folder_is_packed_and_read_where_it_is(
 def test_what_cannot_be_packed_is_told(call: Call, finished: Path, tmp_path: Path) -> None:
     for words, told in (
         (("--pack", tmp_path / "p.zip", "--csv", "-"), "--pack"),
-        (("--pack", "-"), "--pack"),
+        (("--pack", "-"), "pack"),
         (("--pack", tmp_path), str(tmp_path)),
     ):
         answer = call("results", finished, *words)

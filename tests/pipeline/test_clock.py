@@ -1,7 +1,8 @@
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import chain, cycle, repeat
 
 import cv2
 import numpy as np
@@ -10,69 +11,85 @@ import pytest
 from aerocues.pipeline.clock import REPEATS, SECONDS_OF_REPEATS, Clock, StageTime
 
 
-class Calls:
-    """Counts its calls; each takes the next of some CPU and idle seconds."""
+@dataclass
+class Machine:
+    """Its time goes by in calls only."""
 
-    def __init__(self, cpu: float = 0.0, idle: list[float] | None = None) -> None:
+    wall: float = 0.0
+    cpu: float = 0.0
+
+    def perf_counter(self) -> float:
+        return self.wall
+
+    def thread_time(self) -> float:
+        return self.cpu
+
+
+@pytest.fixture(autouse=True)
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    made = Machine()
+    monkeypatch.setattr("aerocues.pipeline.clock.time", made)
+    return made
+
+
+class Calls:
+    """Counts its calls; each takes the next of some CPU and idle seconds of a machine."""
+
+    def __init__(self, machine: Machine, cpu: Sequence[float], idle: Sequence[float] = ()) -> None:
         self.count = 0
         self.random: list[float] = []
-        self._cpu, self._idle = cpu, idle or []
+        self._machine = machine
+        self._cpu, self._idle = cycle(cpu), chain(idle, repeat(0.0))
 
     def __call__(self) -> int:
         self.random.append(float(cv2.randu(np.zeros(1), 0.0, 1.0)[0]))
-        if self.count < len(self._idle):
-            time.sleep(self._idle[self.count])
-        until = time.thread_time() + self._cpu
-        while time.thread_time() < until:
-            pass
+        cpu = next(self._cpu)
+        self._machine.cpu += cpu
+        self._machine.wall += cpu + next(self._idle)
         self.count += 1
         return self.count
 
 
-def test_a_shared_clock_calls_once() -> None:
-    call = Calls(cpu=0.002)
-    result, taken = Clock().time(call)
-    assert (result, call.count) == (1, 1)
-    assert (taken.repeats, taken.spread, taken.peak_memory) == (None, None, None)
-    assert taken.wall >= taken.cpu >= 0.002
+def test_a_shared_clock_calls_once(machine: Machine) -> None:
+    call = Calls(machine, cpu=[0.25], idle=[0.5])
+    assert Clock().time(call) == (1, StageTime(wall=0.75, cpu=0.25))
+    assert call.count == 1
 
 
-def test_an_exclusive_clock_returns_the_first_result_and_the_median_time() -> None:
-    call = Calls(cpu=0.004)
+def test_an_exclusive_clock_returns_the_first_result_and_the_median_time(machine: Machine) -> None:
+    call = Calls(machine, cpu=[0.25, 0.125, 0.1875])
     result, taken = Clock(exclusive=True).time(call)
-    assert result == 1
-    assert call.count >= REPEATS
-    assert taken.repeats is not None
-    assert 1 <= taken.repeats <= call.count
-    assert taken.cpu >= 0.004
+    assert (result, call.count, taken.repeats) == (1, REPEATS, REPEATS)
+    assert (taken.wall, taken.cpu) == (0.1875, 0.1875)
+    assert taken.spread == (0.25 - 0.125) / 0.1875
 
 
-def test_random_numbers_are_seeded_before_each_call() -> None:
-    call = Calls()
+def test_random_numbers_are_seeded_before_each_call(machine: Machine) -> None:
+    call = Calls(machine, cpu=[0.25])
     Clock(seed=5, exclusive=True).time(call)
     assert len(set(call.random)) == 1
-    other = Calls()
+    other = Calls(machine, cpu=[0.25])
     Clock(seed=6).time(other)
     assert other.random[0] != call.random[0]
 
 
-def test_a_call_that_was_disturbed_is_made_up_for() -> None:
-    # The first call of three waits for as long as a disturbed one would; the others do not.
-    call = Calls(cpu=0.05, idle=[0.2])
+def test_a_call_that_was_disturbed_is_made_up_for(machine: Machine) -> None:
+    # The first call of three waits as one would that was disturbed; the others do not.
+    call = Calls(machine, cpu=[0.0625], idle=[0.25])
     _, taken = Clock(exclusive=True).time(call)
-    assert call.count > REPEATS
-    assert taken.wall < 0.2
+    assert (call.count, taken.repeats) == (REPEATS + 1, REPEATS)
+    assert (taken.wall, taken.disturbed) == (0.0625, False)
 
 
-def test_where_every_call_is_disturbed_the_time_says_so() -> None:
-    call = Calls(cpu=0.02, idle=[0.02] * 20)
+def test_where_every_call_is_disturbed_the_time_says_so(machine: Machine) -> None:
+    call = Calls(machine, cpu=[0.0625], idle=[0.0625] * 20)
     _, taken = Clock(exclusive=True).time(call)
     assert taken.disturbed
     assert taken.repeats == call.count == 2 * REPEATS
 
 
-def test_long_calls_are_not_repeated() -> None:
-    call = Calls(idle=[SECONDS_OF_REPEATS])
+def test_long_calls_are_not_repeated(machine: Machine) -> None:
+    call = Calls(machine, cpu=[SECONDS_OF_REPEATS])
     _, taken = Clock(exclusive=True).time(call)
     assert (call.count, taken.repeats, taken.spread) == (1, 1, None)
 

@@ -177,7 +177,7 @@ def changed(**values: Any) -> list[dict[str, Any]]:
 @pytest.mark.parametrize(
     ("values", "told"),
     [
-        ({"inliers": -1}, r"-1(\.0)? as inliers in row 2"),
+        ({"inliers": -1}, r"-1(\.0)?'? as inliers in row 2"),
         ({"seconds_per_1k_matches": -0.5}, "seconds_per_1k_matches in row 2"),
         ({"inliers": 10.5}, "inliers in row 2"),
         ({"matches": float("inf")}, "matches in row 2"),

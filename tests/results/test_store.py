@@ -207,7 +207,7 @@ def test_a_damaged_part_is_an_error_with_the_next_step(store: Store, content: by
     store.write_rows("good", [row(1)])
     (store.folder / "parts" / "bad.parquet").write_bytes(content)
     for read in (store.table, lambda: store.present("shared", retry_failed=False)):
-        with pytest.raises(StoreError, match=r"bad\.parquet"):
+        with pytest.raises(StoreError, match=str(store.folder)):
             read()
 
 
