@@ -11,6 +11,7 @@ from importlib.resources.abc import Traversable
 from typing import Any
 
 from aerocues.errors import MethodUnavailableError
+from aerocues.report.program import program_of
 
 PLACE = re.compile(r"\{\{(title|style|payload|app|plotly)\}\}")
 # What would end the element that the text stands in.
@@ -51,13 +52,7 @@ def _inside_element(text: str) -> str:
 
 
 def _application(folder: Traversable) -> str:
-    """All files of the program in the order of their names, in a scope of their own."""
-    parts = sorted(
-        (part for part in folder.iterdir() if part.name.endswith(".js")),
-        key=lambda part: part.name,
-    )
-    program = "\n".join(_read(part) for part in parts)
-    return f'(() => {{\n"use strict";\n{program}\n}})();'
+    return f'(() => {{\n"use strict";\n{program_of(folder)}\n}})();'
 
 
 def _plotly() -> str:

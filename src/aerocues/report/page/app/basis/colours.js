@@ -1,0 +1,80 @@
+/* Colours: Okabe and Ito's, which people with any colour vision tell apart, and cividis. */
+
+import {isKnown} from "./numbers.js";
+import {state} from "./state.js";
+
+export const THEMES = {
+  light: {
+    ink: "#1b2430", muted: "#5b6675", grid: "#e4e8ed", line: "#9aa5b1", surface: "#ffffff",
+    series: ["#0072b2", "#d98a00", "#009e73", "#d55e00", "#5b5fc7", "#b8578f", "#3a9bd9"],
+    faint: "#c9d1da", hatch: "#a3adb8",
+  },
+  dark: {
+    ink: "#e6eaf0", muted: "#a4afbd", grid: "#2c3540", line: "#66717f", surface: "#171c23",
+    series: ["#56b4e9", "#e69f00", "#2fc79a", "#ff8a4c", "#a3a6ff", "#e59ac4", "#f0e442"],
+    faint: "#3f4a57", hatch: "#56616e",
+  },
+};
+export const SYMBOLS = ["circle", "diamond", "square", "triangle-up"];
+const OUTLINES = ["circle-open", "diamond-open", "square-open", "triangle-up-open"];
+export const SCALE = "Cividis";
+export const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
+  [165, 156, 116], [195, 179, 105], [225, 204, 85], [254, 232, 56]];
+/* From -1 over 0 to 1: blue, the surface's own, orange. */
+export const DIVERGING = {
+  light: [[0, "#0072b2"], [0.5, "#f7f7f5"], [1, "#d98a00"]],
+  dark: [[0, "#56b4e9"], [0.5, "#20262e"], [1, "#e69f00"]],
+};
+
+export const darkWanted = window.matchMedia("(prefers-color-scheme: dark)");
+
+export function themeName() {
+  if (document.documentElement.classList.contains("printing")) return "light";
+  const chosen = state.get("theme");
+  return chosen === "light" || chosen === "dark" ? chosen : (darkWanted.matches ? "dark" : "light");
+}
+
+export function applyTheme() {
+  document.documentElement.dataset.theme = themeName();
+}
+
+/* The colour at a share from 0 to 1. */
+export function onCividis(share) {
+  const place = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
+  const [low, rest] = [Math.floor(place), place % 1];
+  const high = Math.min(low + 1, CIVIDIS.length - 1);
+  return `rgb(${CIVIDIS[low].map((value, i) => Math.round(value + rest * (CIVIDIS[high][i] - value))).join(" ")})`;
+}
+
+/* Whether a colour is bright enough for black text: on cividis from 0 to 1, on the diverging scale from -1 to 1. */
+export function isBrightOnScale(share) {
+  return share > 0.47;
+}
+
+export function isBrightOnDiverging(theme, value) {
+  return theme === "dark" ? Math.abs(value) > 0.55 : value > -0.7;
+}
+
+/* Numbers in the cells of a heat map: black on bright cells, white on dark ones. `texts` are rows of rows. */
+export function cellTexts({x, y, z, texts, isBright, size, axes = {}}) {
+  const groups = new Map([[true, {x: [], y: [], text: []}], [false, {x: [], y: [], text: []}]]);
+  z.forEach((row, i) => row.forEach((value, j) => {
+    if (!isKnown(value)) return;
+    const group = groups.get(isBright(value));
+    group.x.push(x[j]);
+    group.y.push(y[i]);
+    group.text.push(texts[i][j]);
+  }));
+  return [...groups].map(([bright, points]) => ({type: "scatter", mode: "text", name: "not in the table", showlegend: false,
+    ...points, ...axes, hoverinfo: "skip", textfont: {size, color: bright ? "#000000" : "#ffffff"}}));
+}
+
+/* Colour and symbol of the n-th of a series: 7 colours, then other symbols. */
+export function seriesStyle(theme, position) {
+  const colours = THEMES[theme].series;
+  return {
+    color: colours[position % colours.length],
+    symbol: SYMBOLS[Math.floor(position / colours.length) % SYMBOLS.length],
+    outline: OUTLINES[Math.floor(position / colours.length) % OUTLINES.length],
+  };
+}

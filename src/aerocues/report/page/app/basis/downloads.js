@@ -1,0 +1,30 @@
+/* Files to save: tables as CSV, pictures as data. */
+
+import {make} from "./elements.js";
+
+export function saveFile(name, content, type) {
+  const url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], {type}));
+  const link = make("a", {href: url, download: name});
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+function csvCell(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "";
+  const text = String(value);
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
+
+function csvOf(header, rows) {
+  return [header, ...rows].map(row => row.map(csvCell).join(",")).join("\r\n") + "\r\n";
+}
+
+export function saveCsv(name, header, rows) {
+  saveFile(`${name}.csv`, csvOf(header, rows), "text/csv;charset=utf-8");
+}
+
+export function fileStem(...parts) {
+  return parts.join("-").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+}

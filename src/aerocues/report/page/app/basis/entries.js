@@ -1,0 +1,127 @@
+/* Entries: one data set on one machine each. A number `a` is the position of a combination. */
+
+import {counted, isKnown, labelOf, NONE} from "./numbers.js";
+import {arrayOf, payload} from "./payload.js";
+import {meanOf, medianOf} from "./statistics.js";
+
+export const entries = payload.entries;
+export const CODES = ["detector", "descriptor", "norm", "matcher"];
+const remembered = new WeakMap();
+
+/* The result of `compute`, computed once for each entry and key. */
+export function remember(entry, key, compute) {
+  if (!remembered.has(entry)) remembered.set(entry, new Map());
+  const known = remembered.get(entry);
+  if (!known.has(key)) known.set(key, compute());
+  return known.get(key);
+}
+
+export function hasColumn(entry, name) {
+  return Object.hasOwn(entry.columns, name);
+}
+
+/* Values of one combination over the pairs; NaN where there is none. */
+export function pairValues(entry, name, a) {
+  const count = entry.pairs.length;
+  return arrayOf(entry.columns[name].values).subarray(a * count, (a + 1) * count);
+}
+
+/* The mean over pairs of each combination: the score's own, where it has the criterion. */
+export function meansOf(entry, name) {
+  return remember(entry, `means ${name}`, () => {
+    const scored = entry.score.means[name];
+    if (scored) return scored.map(value => (Number.isFinite(value) ? value : null));
+    return entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a)));
+  });
+}
+
+/* The same with failed pairs as 0, for what is better when higher: to compare with the truth, a
+   combination must not gain by failing on the hard pairs. */
+export function meansWithFailures(entry, name) {
+  return remember(entry, `means with failures ${name}`, () => {
+    if (entry.columns[name].better !== "higher") return meansOf(entry, name);
+    const [status, count] = [arrayOf(entry.status), entry.pairs.length];
+    const [good, unknown] = ["ok", "not measured"].map(each => entry.statuses.indexOf(each));
+    return entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a).map((value, pair) => {
+      const outcome = status[a * count + pair];
+      return outcome === unknown || (outcome === good && !Number.isFinite(value)) ? NaN : (outcome === good ? value : 0);
+    })));
+  });
+}
+
+export function mediansOf(entry, name) {
+  return remember(entry, `medians ${name}`, () =>
+    entry.combinations.map((_, a) => medianOf(pairValues(entry, name, a))));
+}
+
+/* Positions of all combinations, the best first, those without a rank last. */
+export function ranked(entry) {
+  return remember(entry, "ranked", () => {
+    const rank = a => entry.score.rank[a] ?? Infinity;
+    return entry.combinations.map((_, a) => a).sort((a, b) => (rank(a) - rank(b)) || (a - b));
+  });
+}
+
+export function isBinary(entry, a) {
+  return entry.norm[a].toUpperCase().startsWith("HAM");
+}
+
+function criterionOf(entry, name) {
+  return entry.score.criteria.find(each => each.name === name);
+}
+
+export function definitionOf(entry, name) {
+  const listed = payload.method?.columns?.find(each => each.name === name);
+  return entry.columns[name]?.definition || criterionOf(entry, name)?.description
+    || listed?.definition || "";
+}
+
+/* What can be put on an axis: one value a combination. */
+export function measuresOf(entry) {
+  return remember(entry, "measures", () => {
+    const score = entry.score;
+    const measures = [
+      {key: "score", label: "CUES", better: "higher", values: score.score},
+      {key: "success_rate", label: "success rate", better: "higher", values: score.success_rate},
+    ];
+    const names = [...score.criteria.map(each => each.name), ...Object.keys(entry.columns)];
+    for (const name of new Set(names)) {
+      const better = criterionOf(entry, name)?.better ?? entry.columns[name]?.better ?? null;
+      measures.push({
+        key: name, label: labelOf(name), better,
+        get values() { return meansOf(entry, name); },
+      });
+    }
+    return measures.filter(measure => measure.values.some(value => value !== null));
+  });
+}
+
+export function measureOf(entry, key) {
+  return measuresOf(entry).find(measure => measure.key === key) ?? null;
+}
+
+/* The first of some columns that the entry has. */
+export function firstColumn(entry, names) {
+  return names.find(name => hasColumn(entry, name)) ?? null;
+}
+
+export function pairLabel(entry, position) {
+  const {sequence, image_1: first, image_2: second} = entry.pairs[position];
+  const leaf = name => String(name).split("/").pop();
+  return `${sequence ? `${sequence}: ` : ""}${leaf(first)} – ${leaf(second)}`;
+}
+
+export function pairCount(entry) {
+  return counted(entry.pairs.length, "pair");
+}
+
+export function rankText(score, a) {
+  if (!isKnown(score.rank[a])) return NONE;
+  const low = score.rank_low?.[a];
+  const high = score.rank_high?.[a];
+  return isKnown(low) && low !== high ? `${score.rank[a]} (${low} to ${high})` : String(score.rank[a]);
+}
+
+export function withRank(entry, positions) {
+  return positions.filter(a => isKnown(entry.score.rank[a]));
+}

@@ -1,0 +1,91 @@
+/* The filter. `and orb -flann`: all words, without the excluded one; `or sift daisy`: any of them;
+   `not l2`: none of them. Bare words mean `and`. A word is the start of a part of a combination's
+   name, or a part exactly where there is one of that name (`gftt` is not GFTT_H). */
+
+import {CODES, entries, ranked, remember} from "./entries.js";
+import {state} from "./state.js";
+
+const knownParts = new Set(entries.flatMap(entry =>
+  CODES.flatMap(code => entry[code].map(part => part.toLowerCase()))));
+
+function parseFilter(text) {
+  const words = {and: [], or: [], not: []};
+  let mode = "and";
+  for (const token of text.toLowerCase().split(/[\s,]+/).filter(Boolean)) {
+    if (Object.hasOwn(words, token)) mode = token;
+    else if (token.startsWith("-")) words.not.push(token.slice(1));
+    else words[mode].push(token);
+  }
+  for (const mode of Object.keys(words)) {
+    words[mode] = words[mode].map(partsOfWord).filter(parts => parts.length);
+  }
+  return words;
+}
+
+function partsOfWord(word) {
+  return word.split("-").filter(Boolean);
+}
+
+function wordMatches(word, parts) {
+  const last = word.length - 1;
+  const exact = knownParts.has(word[last]);
+  for (let start = 0; start + last < parts.length; start += 1) {
+    const fits = word.every((piece, i) => (i === last && !exact
+      ? parts[start + i].startsWith(piece)
+      : parts[start + i] === piece));
+    if (fits) return true;
+  }
+  return false;
+}
+
+function partsOfNames(entry) {
+  return remember(entry, "parts", () => entry.combinations.map((_, a) =>
+    CODES.map(code => entry[code][a].toLowerCase())));
+}
+
+export function chosenChips(code) {
+  return new Set(state.get(code).split(",").filter(Boolean));
+}
+
+/* The filter as it stands: whether a combination passes the words and the chips, by its four names
+   and, where they are at hand, the same in lower case. */
+export function currentFilter() {
+  const words = parseFilter(state.get("q"));
+  const chips = CODES.map(chosenChips);
+  return (names, parts = names.map(name => name.toLowerCase())) =>
+    chips.every((set, i) => !set.size || set.has(names[i]))
+    && words.and.every(word => wordMatches(word, parts))
+    && (!words.or.length || words.or.some(word => wordMatches(word, parts)))
+    && !words.not.some(word => wordMatches(word, parts));
+}
+
+function passing(entry) {
+  const passes = currentFilter();
+  return partsOfNames(entry).map((parts, a) => passes(CODES.map(code => entry[code][a]), parts));
+}
+
+/* Words that are part of no combination anywhere. */
+export function unknownWords() {
+  const words = Object.values(parseFilter(state.get("q"))).flat();
+  return words
+    .filter(word => !entries.some(entry =>
+      partsOfNames(entry).some(parts => wordMatches(word, parts))))
+    .map(word => word.join("-"));
+}
+
+export function isFiltered() {
+  return Boolean(state.get("q").trim()) || CODES.some(code => chosenChips(code).size);
+}
+
+const filtered = {key: null, entries: new Map()};
+
+/* Positions of the combinations that pass, the best first. */
+export function shownIn(entry) {
+  const key = JSON.stringify(["q", ...CODES].map(name => state.get(name)));
+  if (filtered.key !== key) Object.assign(filtered, {key, entries: new Map()});
+  if (!filtered.entries.has(entry)) {
+    const pass = passing(entry);
+    filtered.entries.set(entry, ranked(entry).filter(a => pass[a]));
+  }
+  return filtered.entries.get(entry);
+}

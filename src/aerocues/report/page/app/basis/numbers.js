@@ -1,0 +1,81 @@
+/* Numbers and names as people read them. */
+
+export const NONE = "–";
+
+export function isKnown(value) {
+  return value !== null && value !== undefined && Number.isFinite(value);
+}
+
+/* Three significant digits; whole numbers from 100 on, with thousands apart. */
+export function shown(value, digits = 3) {
+  if (!isKnown(value)) return NONE;
+  const size = Math.abs(value);
+  if (Number.isInteger(value) || size >= 100) return Math.round(value).toLocaleString("en");
+  if (size > 0 && size < 1e-3) return value.toExponential(1);
+  return String(Number(value.toPrecision(digits)));
+}
+
+/* A score, with the same number of decimals everywhere. */
+export function fixed(value, decimals = 3) {
+  return isKnown(value) ? value.toFixed(decimals) : NONE;
+}
+
+export function percent(value) {
+  if (!isKnown(value)) return NONE;
+  if (value > 0 && value < 0.01) return "< 1\u00a0%";
+  if (value < 1 && value > 0.99) return "> 99\u00a0%";
+  return `${Math.round(100 * value)}\u00a0%`;
+}
+
+export function duration(seconds) {
+  if (!isKnown(seconds)) return NONE;
+  if (seconds < 1e-3) return `${shown(1e6 * seconds, 2)} µs`;
+  if (seconds < 1) return `${shown(1e3 * seconds)} ms`;
+  return seconds < 120 ? `${shown(seconds)} s` : `${shown(seconds / 60)} min`;
+}
+
+export function counted(number, noun, plural = `${noun}s`) {
+  return `${number.toLocaleString("en")} ${number === 1 ? noun : plural}`;
+}
+
+export function listed(words, last = "and") {
+  if (words.length < 2) return words.join("");
+  return `${words.slice(0, -1).join(", ")} ${last} ${words[words.length - 1]}`;
+}
+
+const LABELS = {
+  score: "CUES", f1_score: "F1 score", points_3d: "3D points",
+  f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "time of detecting",
+  describe_seconds: "time of describing", match_seconds: "time of matching", verify_seconds: "time of verifying",
+  position_rmse: "position RMSE", position_error_share: "position error / extent",
+  cloud_distance_median: "C2C median", cloud_distance_rms: "C2C RMS", cloud_distance_p95: "C2C 95th percentile",
+  reference_distance_median: "C2C back, median", reference_distance_rms: "C2C back, RMS",
+  reference_distance_p95: "C2C back, 95th percentile", reconstruction_seconds: "time of reconstruction",
+};
+
+/* A column's name in words: `gt_precision@3` as "true precision at 3 px". */
+export function labelOf(name) {
+  if (Object.hasOwn(LABELS, name)) return LABELS[name];
+  const [stem, threshold] = name.split("@");
+  const words = stem.replace(/^gt_/, "true ").replace(/auc$/, "AUC").replaceAll("_", " ");
+  if (!threshold) return words;
+  return `${words} at ${threshold}${stem.startsWith("pose") ? "°" : " px"}`;
+}
+
+/* Seconds as durations, shares with three decimals, counts as numbers. */
+export function valueText(name, value) {
+  if (/seconds/.test(name)) return duration(value);
+  return isShare(name) ? fixed(value) : shown(value);
+}
+
+export function isShare(name) {
+  return /precision|recall|repeatability|^f1_|_auc@|matching_score|^score$|success_rate/.test(name);
+}
+
+export function isGroundTruth(name) {
+  return /^gt_|_auc@|^homography_error$|^pose_/.test(name);
+}
+
+export function sentenceCase(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

@@ -1,0 +1,44 @@
+/* What is seen of the clouds: the two that were chosen, turned together. */
+
+import {themeName, THEMES} from "../basis/colours.js";
+import {remember} from "../basis/entries.js";
+import {counted, sentenceCase, shown} from "../basis/numbers.js";
+import {arrayOf, payload} from "../basis/payload.js";
+import {currentEntry} from "../basis/state.js";
+import {drawCloud} from "./cloud-drawing.js";
+import {FRONT, pixelOf} from "./cloud-space.js";
+
+export const cloudView = {turn: {...FRONT}, playing: false};
+
+export function cloudsOf(entry) {
+  return remember(entry, "clouds", () => (payload.clouds ?? []).filter(cloud => cloud.entry === entry.name));
+}
+
+export function drawClouds() {
+  const entry = currentEntry();
+  if (!cloudsOf(entry).length || !cloudView.stage) return;
+  const colours = THEMES[themeName()];
+  const [cameras, truth] = cloudView.layers.map(layer => layer.value());
+  for (const {canvas, cloud, pixels} of cloudView.panels) {
+    const width = Math.floor(canvas.parentElement.clientWidth) - 2 * parseFloat(getComputedStyle(canvas.parentElement).paddingLeft);
+    canvas.hidden = !cloud;
+    if (!cloud || !pixels || width <= 0) continue;
+    const height = Math.round(Math.min(460, Math.max(280, width * 0.72)));
+    const density = Math.min(window.devicePixelRatio || 1, 2);
+    const [wide, tall] = [width, height].map(size => Math.round(size * density));
+    if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, {width: wide, height: tall});
+    canvas.style.height = `${height}px`;
+    const view = {cloud, pixels, turn: cloudView.turn, stage: cloudView.stage, cameras, truth, colours, ground: pixelOf(colours.surface)};
+    drawCloud(canvas.getContext("2d", {willReadFrequently: true}), view, wide, tall, density);
+    canvas.setAttribute("aria-label", `Cloud of ${cloud.combination}. ${cloudNote(cloud)}`);
+  }
+}
+
+/* What is drawn, and what is not. */
+export function cloudNote(cloud) {
+  if (!cloud) return "There is no cloud of this combination.";
+  const drawn = arrayOf(cloud.colours).length / 3;
+  const left = cloud.all_points - cloud.strays - drawn;
+  return [sentenceCase(cloud.why), left > 0 ? `${shown(drawn)} of ${counted(cloud.all_points, "point")} are drawn, chosen at random`
+    : `${counted(drawn, "point")} are drawn`, cloud.strays ? `${counted(cloud.strays, "point")} far off left out` : null].filter(Boolean).join("; ") + ".";
+}

@@ -1,0 +1,115 @@
+/* Two clouds side by side, turned together: by dragging, keys, buttons, or by themselves. */
+
+import {themeName} from "../basis/colours.js";
+import {fileStem, saveFile} from "../basis/downloads.js";
+import {figuresList, make} from "../basis/elements.js";
+import {remember} from "../basis/entries.js";
+import {currentFilter} from "../basis/filter.js";
+import {sentenceCase, shown} from "../basis/numbers.js";
+import {currentEntry} from "../basis/state.js";
+import {colourLimits, POINT_COLOURS, pointPixels, scaleColours, sortedKnown, stageOf} from "./cloud-space.js";
+import {cloudNote, cloudsOf, cloudView, drawClouds} from "./cloud-view.js";
+import {modelColumns, modelsOf} from "./models-table.js";
+import {listenToTurns, setPlaying, turnBy} from "./turning.js";
+import {layerControl, selectControl} from "../shell/controls.js";
+
+const stillWanted = window.matchMedia("(prefers-reduced-motion: reduce)");
+const CLOUD_LAYERS = [
+  {key: "cameras", label: "Cameras", shown: true},
+  {key: "truth", label: "True positions", shown: true},
+];
+const TURNS = [
+  ["◀", "Turn to the left", "ArrowLeft"], ["▶", "Turn to the right", "ArrowRight"], ["▲", "See more from above", "ArrowUp"],
+  ["▼", "See more from the side", "ArrowDown"], ["+", "Nearer", "+"], ["−", "Farther", "-"],
+];
+
+/* Clouds of combinations that pass the filter; all, if none does. */
+function cloudsToShow(entry) {
+  const passes = currentFilter();
+  const found = cloudsOf(entry).filter(cloud => passes(cloud.combination.split("-")));
+  return found.length ? found : cloudsOf(entry);
+}
+
+function cloudChoice(name, label, place) {
+  return {name, label,
+    options: entry => cloudsToShow(entry).map(({combination, why}) => ({key: combination, label: `${combination} (${why})`})),
+    fallback: entry => (cloudsToShow(entry)[place] ?? cloudsToShow(entry)[0])?.combination};
+}
+
+const CLOUD_COLOURS = {name: "colour", label: "Colours", fallback: () => "image",
+  options: entry => POINT_COLOURS.filter(kind => kind.key === "image" || cloudsOf(entry).some(cloud => sortedKnown(kind.values(cloud)).length))
+    .map(({key, label}) => ({key, label}))};
+
+export function buildClouds(parent) {
+  const controls = {left: selectControl("cloud", cloudChoice("left", "First", 0)),
+    right: selectControl("cloud", cloudChoice("right", "Second", 1)), colour: selectControl("cloud", CLOUD_COLOURS)};
+  const layers = CLOUD_LAYERS.map(layer => layerControl("cloud", layer));
+  const play = make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false", hidden: stillWanted.matches, onclick: () => setPlaying(!cloudView.playing)}, "Turn");
+  const buttons = TURNS.map(([sign, label, key]) => make("button", {type: "button", class: "quiet", "aria-label": label, title: label, onclick: () => turnBy(key)}, sign));
+  const panels = ["left", "right"].map(side => buildCloudPanel(side));
+  const legend = make("div", {class: "cloud-legend"});
+  Object.assign(cloudView, {controls, layers, panels, play, legend});
+  parent.append(
+    make("h3", {}, "Clouds"),
+    make("p", {class: "read"}, "Both are seen from the same place. Drag to turn, or use the arrow keys; + and − come nearer and go away, Home "
+      + "turns back. A ring marks where a camera truly was, and a line leads to it from where the model has it: long lines, a bent model."),
+    make("div", {class: "controls"}, [...Object.values(controls), ...layers].map(control => control.element), make("span", {class: "save"}, play, buttons)),
+    legend, make("div", {class: "panels"}, panels.map(panel => panel.element)));
+}
+
+function buildCloudPanel(side) {
+  const canvas = make("canvas", {role: "img", tabindex: "0", "data-side": side});
+  const panel = {side, canvas, title: make("h4"), note: make("p", {class: "note"}), words: make("div", {class: "words"})};
+  const save = make("button", {type: "button", class: "quiet", "aria-label": `Save the ${side} cloud as PNG`,
+    onclick: () => canvas.toBlob(blob => saveFile(`${fileStem(currentEntry().name, "cloud", panel.title.textContent)}.png`, blob))}, "PNG");
+  panel.element = make("article", {class: "panel-of-cloud"}, make("div", {class: "panel-title"}, panel.title, save), canvas, panel.note, panel.words);
+  listenToTurns(canvas);
+  new ResizeObserver(() => drawClouds()).observe(panel.element);
+  return panel;
+}
+
+export function refreshClouds() {
+  if (cloudsOf(currentEntry()).length) updateClouds();
+}
+
+function updateClouds() {
+  for (const control of [...Object.values(cloudView.controls), ...cloudView.layers]) control.refresh();
+  const clouds = cloudsOf(currentEntry());
+  cloudView.stage = remember(currentEntry(), "stage", () => stageOf(clouds));
+  for (const panel of cloudView.panels) {
+    const combination = cloudView.controls[panel.side].value();
+    panel.cloud = clouds.find(cloud => cloud.combination === combination) ?? null;
+    panel.title.textContent = combination ?? "";
+    panel.words.replaceChildren(...cloudWords(panel.cloud));
+    panel.note.textContent = cloudNote(panel.cloud);
+  }
+  colourClouds();
+  drawClouds();
+}
+
+/* The same colours mean the same in both. */
+function colourClouds() {
+  const kind = POINT_COLOURS.find(each => each.key === cloudView.controls.colour.value());
+  const shownClouds = cloudView.panels.map(panel => panel.cloud).filter(Boolean);
+  const limits = kind.values ? colourLimits(kind, shownClouds) : null;
+  for (const panel of cloudView.panels) panel.pixels = panel.cloud && pointPixels(panel.cloud, kind, limits, themeName());
+  cloudView.legend.hidden = !limits;
+  if (!limits) return;
+  const scale = make("span", {class: "scale", "aria-hidden": "true"});
+  scale.style.background = `linear-gradient(to right, ${scaleColours(themeName()).filter((_, i) => i % 15 === 0).join(", ")})`;
+  const [low, high] = limits.map(value => shown(value));
+  cloudView.legend.replaceChildren(`${sentenceCase(kind.label)}: ${low} `, scale, ` ${high} ${kind.unit(shownClouds[0])} and more`);
+}
+
+const FIGURES_OF_CLOUDS = ["registered_images", "placed_images", "points_3d", "mean_track_length", "reprojection_error", "position_rmse",
+  "cloud_distance_rms", "reference_distance_rms"];
+
+function cloudWords(cloud) {
+  const entry = currentEntry();
+  const models = modelsOf(entry);
+  const m = cloud ? models?.combinations.indexOf(cloud.combination) ?? -1 : -1;
+  if (m < 0) return [];
+  const rows = modelColumns(entry).filter(({key}) => FIGURES_OF_CLOUDS.includes(key)).map(column => [column.label, column.text(m)]);
+  const reason = models.message[m];
+  return [reason ? make("p", {class: "note"}, sentenceCase(reason)) : "", figuresList([["Status", models.status[m].replaceAll("_", " ")], ...rows])];
+}

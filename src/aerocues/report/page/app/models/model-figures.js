@@ -1,0 +1,140 @@
+/* Figures of the models: distances between clouds, and what figures of pairs say of models. */
+
+import {seriesStyle, THEMES} from "../basis/colours.js";
+import {safe} from "../basis/elements.js";
+import {CODES} from "../basis/entries.js";
+import {currentFilter} from "../basis/filter.js";
+import {counted, fixed, isKnown, labelOf, sentenceCase} from "../basis/numbers.js";
+import {spearman} from "../basis/statistics.js";
+import {modelColumn, modelsOf, shownModels} from "./models-table.js";
+import {categoryAxis, logAxis} from "../shell/axes.js";
+import {colourControl, scaleControl, topControl} from "../shell/controls.js";
+import {matrixFigure} from "../shell/matrix.js";
+import {scatterFrame} from "../shell/points.js";
+
+const C2C_STATISTICS = [["median", "circle"], ["rms", "diamond"], ["p95", "line-ns-open"]];
+
+export const CLOUD_DISTANCES = {
+  id: "c2c", title: "Distances between clouds",
+  read: "From each point to the nearest point of the reference’s cloud, and back (C2C, as CloudCompare measures it). A short way to the "
+    + "reference and a long way back: what there is is right, but much is missing.",
+  controls: [topControl([10, 20, 40], 20), scaleControl("log")],
+  available: entry => (entry.models?.values.cloud_distance_rms ? true : "No distances between clouds were measured."),
+  draw({entry, option, theme, narrow}) {
+    const models = modelsOf(entry);
+    const known = shownModels(entry).filter(m => isKnown(models.values.cloud_distance_rms[m]) && models.combinations[m] !== models.reference);
+    const rows = known.slice(0, Number(option("top")));
+    if (!rows.length) return {empty: "None of these combinations has a distance to the reference."};
+    const names = rows.map(m => safe(models.combinations[m]));
+    const data = ["cloud", "reference"].flatMap((way, i) => C2C_STATISTICS.map(([statistic, symbol]) => ({
+      type: "scatter", mode: "markers", y: names,
+      name: `${way === "cloud" ? "to the reference" : "back"}, ${statistic === "p95" ? "95th percentile" : statistic === "rms" ? "RMS" : "median"}`,
+      x: rows.map(m => models.values[`${way}_distance_${statistic}`][m]),
+      marker: {symbol, size: 9, color: THEMES[theme].series[i], line: {color: THEMES[theme].series[i], width: 2}},
+      hovertemplate: "%{y}<br>%{x:.3g}<extra>%{fullData.name}</extra>",
+    })));
+    const values = data.flatMap(trace => trace.x).filter(value => value > 0);
+    return {
+      data, height: 26 * rows.length + (narrow ? 190 : 130),
+      layout: {
+        xaxis: {title: modelLabelWithUnit(entry), ...(option("scale") === "log" ? logAxis(values) : {rangemode: "tozero"})},
+        yaxis: {...categoryAxis(names), tickfont: {size: narrow ? 9 : 10.5}},
+      },
+      note: `To the cloud of ${models.reference}, ${counted(rows.length, "model")} of ${known.length}.`,
+    };
+  },
+};
+
+function modelLabelWithUnit(entry) {
+  const unit = modelColumn(entry, "cloud_distance_rms")?.unit;
+  return `distance in ${unit === "m" ? "metres" : "units of the reference’s model"}`;
+}
+
+function hasRelations(entry) {
+  const found = entry.models?.relations;
+  if (!found) return "There are no models.";
+  return found.unavailable ? sentenceCase(`${found.unavailable}.`) : true;
+}
+
+const MEASURE_OF_RELATION = {name: "measure", label: "Correlation", fallback: () => "spearman",
+  options: () => [{key: "spearman", label: "Spearman’s (of ranks)"}, {key: "pearson", label: "Pearson’s (of values)"}]};
+
+export const OUTCOME_MATRIX = {
+  id: "outcomes", title: "Do good matches make good models?",
+  read: "Correlation over the combinations of what was measured of pairs of images (rows) with what became of the models (columns). What "
+    + "describes a model is taken over those that succeeded, images over all: broken models have few points and a low error.",
+  controls: [MEASURE_OF_RELATION], ignoresFilter: true, wide: true,
+  available: hasRelations,
+  draw({entry, option, theme, narrow}) {
+    const found = modelsOf(entry).relations;
+    const numbers = found.numbers.flat().filter(number => number >= found.fewest);
+    return {
+      ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: found[option("measure")], theme, narrow,
+        what: option("measure") === "spearman" ? "Spearman" : "Pearson"}),
+      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations, whatever the filter.`,
+    };
+  },
+};
+
+export const OUTCOME_SCATTER = {
+  id: "outcome", title: "A figure of pairs against a model",
+  read: "One dot a combination. Choose what was measured of pairs, and what of models.",
+  controls: [
+    {name: "x", label: "Across", options: entry => relationOptions(entry, "features"),
+      fallback: entry => preferredOption(relationOptions(entry, "features"), ["recall_beyond_chance", "recall", "inliers"])},
+    {name: "y", label: "Up", options: entry => relationOptions(entry, "outcomes"),
+      fallback: entry => preferredOption(relationOptions(entry, "outcomes"), ["points_3d"])},
+    colourControl("detector"),
+  ],
+  available: hasRelations,
+  draw: outcomePoints,
+};
+
+function relationOptions(entry, kind) {
+  const found = entry.models?.relations;
+  return (found?.[kind] ?? []).map(name => ({key: name, label: labelOf(name)}));
+}
+
+function preferredOption(options, wanted) {
+  const keys = options.map(({key}) => key);
+  return wanted.find(key => keys.includes(key)) ?? keys[0];
+}
+
+function outcomePoints({entry, option, theme, narrow}) {
+  const models = modelsOf(entry);
+  const {combinations, values, fewest} = models.relations;
+  const [xName, yName] = [option("x"), option("y")];
+  const place = new Map(models.combinations.map((name, m) => [name, m]));
+  const passes = currentFilter();
+  const found = combinations.map((name, i) => ({name, x: values[xName][i], m: place.get(name)}))
+    .map(each => ({...each, y: outcomeOf(models, yName, each.m)}))
+    .filter(({name, x, y}) => passes(name.split("-")) && isKnown(x) && isKnown(y));
+  if (!found.length) return {empty: "None of these combinations has both values."};
+  const code = CODES.indexOf(option("colour"));
+  const groups = [...new Set(found.map(({name}) => name.split("-")[code]))].sort();
+  return {
+    data: groups.map((group, i) => {
+      const own = found.filter(({name}) => name.split("-")[code] === group);
+      const {color, symbol} = seriesStyle(theme, i);
+      return {type: "scatter", mode: "markers", name: safe(group), x: own.map(each => each.x), y: own.map(each => each.y), ids: own.map(each => each.name),
+        text: own.map(({name, m}) => `${safe(name)}<br>${models.status[m].replaceAll("_", " ")}`), hovertemplate: "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>",
+        marker: {color, symbol, size: 8, opacity: 0.85}};
+    }),
+    height: narrow ? 440 : 460,
+    layout: scatterFrame({title: labelOf(xName), nticks: narrow ? 5 : 8}, {title: labelOf(yName)}, narrow),
+    note: found.length < fewest ? `${counted(found.length, "combination")}: too few to tell a correlation.`
+      : `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
+  };
+}
+
+const WITHOUT_MODEL = ["no_features", "no_verified_pair", "no_initial_pair", "no_model"];
+
+/* The value that counts for a relation, as in `scoring/outcomes.py`: no model is 0 images, a crash is unknown; what
+   describes a model is of those that succeeded; the reference has no distance to itself. */
+function outcomeOf(models, name, m) {
+  const value = models.values[name]?.[m] ?? null;
+  const status = models.status[m];
+  if (name === "registered_images") return value ?? (WITHOUT_MODEL.includes(status) ? 0 : null);
+  if (status !== "ok" || (name.includes("_distance_") && models.combinations[m] === models.reference)) return null;
+  return value;
+}

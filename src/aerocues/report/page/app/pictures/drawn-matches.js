@@ -1,0 +1,141 @@
+/* Draws a pair of images with keypoints and matches on a canvas. */
+
+import {counted} from "../basis/numbers.js";
+import {arrayOf, payload} from "../basis/payload.js";
+
+export const pictureView = {};
+const INLIER = "#38c6ff";
+const OUTLIER = "#ff8a1f";
+const KEYPOINT = "#ffe04a";
+const LEGIBLE_MATCHES = 150;
+const loadedImages = new Map();
+
+function loadImage(key) {
+  if (!loadedImages.has(key)) {
+    loadedImages.set(key, new Promise((resolve, reject) => {
+      const image = new Image();
+      image.onload = () => resolve(image);
+      image.onerror = () => reject(new Error(`the image ${key} cannot be shown`));
+      image.src = payload.images[key].src;
+    }));
+  }
+  return loadedImages.get(key);
+}
+
+export async function drawPanel(panel) {
+  const {picture, canvas, element} = panel;
+  canvas.hidden = !picture;
+  if (!picture) {
+    panel.note.textContent = "There is no picture of this combination on this pair.";
+    return;
+  }
+  const width = Math.floor(element.clientWidth);
+  if (!width) return;
+  const images = await Promise.all([loadImage(picture.image_1), loadImage(picture.image_2)])
+    .catch(error => { panel.note.textContent = error.message; return null; });
+  if (!images || panel.picture !== picture) return;
+  const place = placement(picture, width);
+  const density = Math.min(window.devicePixelRatio || 1, 2);
+  Object.assign(canvas, {width: Math.round(width * density), height: Math.round(place.height * density)});
+  canvas.style.height = `${place.height}px`;
+  const pen = canvas.getContext("2d");
+  pen.scale(density, density);
+  images.forEach((image, i) => pen.drawImage(image, place.left[i], place.top[i], place.width[i], place.tall[i]));
+  const drawn = drawLayers(pen, picture, place);
+  panel.note.textContent = drawn;
+  canvas.setAttribute("aria-label", `Matches of ${picture.combination}. ${drawn}`);
+}
+
+/* Beside each other, or one above the other where that is larger. */
+function placement(picture, width) {
+  const [first, second] = [payload.images[picture.image_1], payload.images[picture.image_2]];
+  const gap = 4;
+  const stacked = width < 420 && first.width >= first.height;
+  const factor = stacked
+    ? width / Math.max(first.width, second.width)
+    : (width - gap) / (first.width + second.width);
+  const [widths, talls] = [[first.width, second.width], [first.height, second.height]].map(sizes => sizes.map(size => size * factor));
+  return {
+    width: widths, tall: talls,
+    left: [0, stacked ? 0 : widths[0] + gap], top: [0, stacked ? talls[0] + gap : 0],
+    height: stacked ? talls[0] + gap + talls[1] : Math.max(...talls),
+    scale: [first.scale * factor, second.scale * factor],
+  };
+}
+
+function at(place, image, x, y) {
+  return [place.left[image] + (x + 0.5) * place.scale[image], place.top[image] + (y + 0.5) * place.scale[image]];
+}
+
+/* Draws what is switched on; tells in words what was drawn. */
+function drawLayers(pen, picture, place) {
+  const words = [];
+  const [inliers, outliers, keypoints] = pictureView.layers.map(layer => layer.value());
+  if (keypoints) words.push(drawKeypoints(pen, picture, place));
+  const wanted = {1: inliers, 0: outliers};
+  if (wanted[0] || wanted[1]) words.push(drawMatches(pen, picture, place, wanted));
+  return words.join(" ") || "No layer is switched on.";
+}
+
+function drawKeypoints(pen, picture, place) {
+  pen.strokeStyle = KEYPOINT;
+  pen.lineWidth = 1;
+  pen.beginPath();
+  ["keypoints_1", "keypoints_2"].forEach((name, image) => {
+    const points = arrayOf(picture[name]);
+    for (let i = 0; i < points.length; i += 2) {
+      const [x, y] = at(place, image, points[i], points[i + 1]);
+      pen.moveTo(x + 2, y);
+      pen.arc(x, y, 2, 0, 2 * Math.PI);
+    }
+  });
+  pen.stroke();
+  const every = picture.keypoints_every;
+  return every > 1 ? `Every ${ordinal(every)} keypoint is drawn.` : "All keypoints are drawn.";
+}
+
+function drawMatches(pen, picture, place, wanted) {
+  const [matches, inlier] = [arrayOf(picture.matches), arrayOf(picture.inlier)];
+  const indices = [...inlier.keys()].filter(i => wanted[inlier[i]]);
+  const every = matchStep(indices.length);
+  const drawn = indices.filter((_, i) => i % every === 0);
+  for (const kind of [0, 1]) {
+    pen.strokeStyle = kind ? INLIER : OUTLIER;
+    pen.fillStyle = pen.strokeStyle;
+    pen.lineWidth = 1;
+    pen.globalAlpha = drawn.length > 400 ? 0.5 : 0.8;
+    for (const i of drawn.filter(each => inlier[each] === kind)) drawMatch(pen, matches.subarray(4 * i, 4 * i + 4), place);
+  }
+  pen.globalAlpha = 1;
+  const total = every * (picture.matches_every || 1);
+  const share = drawn.filter(i => inlier[i]).length;
+  return `${total > 1 ? `Every ${ordinal(total)} match is drawn` : "Every match is drawn"}: `
+    + `${counted(share, "inlier")}, ${counted(drawn.length - share, "outlier")}.`;
+}
+
+/* Every n-th match, as asked for; by itself, so many that single ones can be told apart. */
+function matchStep(count) {
+  const chosenStep = pictureView.controls.every.value();
+  if (chosenStep !== "auto") return Number(chosenStep);
+  const steps = [1, 2, 5, 10, 20, 50];
+  return steps.find(step => count / step <= LEGIBLE_MATCHES) ?? 50;
+}
+
+function drawMatch(pen, [x1, y1, x2, y2], place) {
+  const [from, to] = [at(place, 0, x1, y1), at(place, 1, x2, y2)];
+  pen.beginPath();
+  pen.moveTo(...from);
+  pen.lineTo(...to);
+  pen.stroke();
+  for (const end of [from, to]) {
+    pen.beginPath();
+    pen.arc(...end, 1.8, 0, 2 * Math.PI);
+    pen.fill();
+  }
+}
+
+function ordinal(number) {
+  const last = number % 10;
+  const teen = Math.floor(number / 10) % 10 === 1;
+  return `${number}${teen ? "th" : ({1: "st", 2: "nd", 3: "rd"}[last] ?? "th")}`;
+}

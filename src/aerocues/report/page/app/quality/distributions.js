@@ -1,0 +1,94 @@
+/* Distribution over the pairs, a row a combination. */
+
+import {safe} from "../basis/elements.js";
+import {firstColumn, mediansOf, pairLabel, pairValues} from "../basis/entries.js";
+import {isKnown, isShare, labelOf, percent, valueText} from "../basis/numbers.js";
+import {axisLabel, categoryAxis, logAxis, names} from "../shell/axes.js";
+import {columnOptions, scaleControl, topControl} from "../shell/controls.js";
+
+/* The first columns of these that an entry has, by pair. */
+const QUALITY_COLUMNS = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+export const DISTRIBUTIONS = {
+  id: "spread", title: "From pair to pair", wide: true,
+  read: "A dot is one image pair; the shape shows where most of them lie, its line the median. A wide one is "
+    + "good on some pairs and poor on others. Failed pairs have no dot.",
+  controls: [
+    {name: "column", label: "Value", options: entry => columnOptions(entry),
+      fallback: entry => firstColumn(entry, QUALITY_COLUMNS)},
+    {name: "kind", label: "As", fallback: () => "violin", options: () => [
+      {key: "violin", label: "violins"}, {key: "box", label: "boxes"}, {key: "strip", label: "dots only"}]},
+    {name: "order", label: "Best by", fallback: () => "score", options: () => [
+      {key: "score", label: "CUES"}, {key: "median", label: "this value's median"}]},
+    topControl([10, 20, 40], 10), scaleControl(),
+  ],
+  draw(context) {
+    const {entry, option, colours} = context;
+    const column = option("column");
+    const top = orderedBy(context, column, option("order")).slice(0, Number(option("top")));
+    const points = pointsOfPairs(entry, column, top, option("scale") === "log");
+    if (!points.x.length) return {empty: `None of these combinations has a value of ${labelOf(column)}.`};
+    const bounded = isShare(column);
+    return {
+      data: spreadTraces(points, option("kind"), labelOf(column), colours),
+      height: Math.max(top.length, 2) * 40 + 60,
+      layout: {
+        xaxis: {title: axisLabel(entry, column), ...(option("scale") === "log" ? logAxis(points.x, value => valueText(column, value)) : {}),
+          ...(bounded && option("scale") === "linear" ? {range: [-0.02, 1.02]} : {})},
+        yaxis: categoryAxis(names(entry, top)), showlegend: false, violinmode: "overlay", violingap: 0.15, boxgap: 0.3, hovermode: "closest",
+      },
+      note: failuresNote(entry, top),
+    };
+  },
+};
+
+function orderedBy({entry, shown: rows}, column, order) {
+  if (order === "score") return rows;
+  const medians = mediansOf(entry, column);
+  const sign = entry.columns[column].better === "lower" ? 1 : -1;
+  return rows.filter(a => isKnown(medians[a])).sort((a, b) => sign * (medians[a] - medians[b]));
+}
+
+function pointsOfPairs(entry, column, rows, positive) {
+  const [x, y, ids] = [[], [], []];
+  for (const a of rows) {
+    pairValues(entry, column, a).forEach((value, pair) => {
+      if (!Number.isFinite(value) || (positive && value <= 0)) return;
+      x.push(value);
+      y.push(safe(entry.combinations[a]));
+      ids.push(`${safe(pairLabel(entry, pair))}`);
+    });
+  }
+  return {x, y, ids};
+}
+
+/* One trace for all rows, but for violins: within a trace Plotly gives them different widths. */
+function spreadTraces(points, kind, name, colours) {
+  if (kind !== "violin") return [spreadTrace(points, kind, name, colours)];
+  return [...new Set(points.y)].map(row => {
+    const own = points.y.map((_, i) => i).filter(i => points.y[i] === row);
+    const [x, y, ids] = [points.x, points.y, points.ids].map(values => own.map(i => values[i]));
+    return {...spreadTrace({x, y, ids}, kind, name, colours), scalegroup: row};
+  });
+}
+
+function spreadTrace({x, y, ids}, kind, name, colours) {
+  const color = colours.series[0];
+  const marker = {color, size: 4, opacity: 0.65};
+  const common = {orientation: "h", name: safe(name), x, y, text: ids, hovertemplate: "%{y}<br>%{text}<br>%{x:.4g}<extra></extra>"};
+  if (kind === "violin") {
+    return {...common, type: "violin", points: "all", jitter: 0.4, pointpos: 0, marker, spanmode: "hard", hoveron: "points",
+      line: {color, width: 1}, fillcolor: `${color}26`, meanline: {visible: false}, scalemode: "width",
+      box: {visible: true, width: 0.2, line: {color: colours.ink, width: 1}, fillcolor: "rgba(0,0,0,0)"}};
+  }
+  const hidden = kind === "strip";
+  return {...common, type: "box", boxpoints: "all", jitter: 0.5, pointpos: 0, marker, hoveron: "points",
+    line: {color: hidden ? "rgba(0,0,0,0)" : color, width: 1}, fillcolor: hidden ? "rgba(0,0,0,0)" : `${color}26`};
+}
+
+function failuresNote(entry, rows) {
+  const failed = rows.filter(a => isKnown(entry.score.success_rate[a]) && entry.score.success_rate[a] < 1);
+  if (!failed.length) return "None of these failed on any pair.";
+  const told = failed.slice(0, 6).map(a => `${entry.combinations[a]} ${percent(entry.score.success_rate[a])}`);
+  const more = failed.length > 6 ? ` and ${failed.length - 6} more` : "";
+  return `Not on all pairs: ${told.join(", ")}${more}.`;
+}

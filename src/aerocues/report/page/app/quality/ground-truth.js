@@ -1,0 +1,71 @@
+/* What the ground truth says, beside what the inliers say. */
+
+import {firstColumn, meansWithFailures} from "../basis/entries.js";
+import {isGroundTruth, isKnown, labelOf} from "../basis/numbers.js";
+import {spearman} from "../basis/statistics.js";
+import {scatterDraw} from "./scatter.js";
+import {colourControl, columnOptions} from "../shell/controls.js";
+import {matrixFigure} from "../shell/matrix.js";
+
+function quantitiesOnly(name) {
+  return !/seconds/.test(name);
+}
+
+function truthColumns(entry) {
+  return Object.keys(entry.columns).filter(isGroundTruth);
+}
+
+function inlierColumns(entry) {
+  return Object.keys(entry.columns).filter(name => !isGroundTruth(name) && quantitiesOnly(name));
+}
+
+function hasTruth(entry) {
+  return truthColumns(entry).length ? true : "There is no ground truth for these images.";
+}
+
+export const TRUTH = {
+  id: "truth", title: "Ground truth against inliers",
+  read: "Across: what can be measured without ground truth. Up: what is true. On the dotted line both say the same; "
+    + "far below it, inliers deceive. Failed pairs count as 0 in both.",
+  controls: [
+    {name: "x", label: "Across", options: entry => columnOptions(entry, name => !isGroundTruth(name)),
+      fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision"])},
+    {name: "y", label: "Up", options: entry => columnOptions(entry, isGroundTruth),
+      fallback: entry => firstColumn(entry, ["gt_precision@3"])},
+    colourControl("descriptor"),
+  ],
+  available: hasTruth,
+  draw: context => scatterDraw({...context, option: name => (name === "points" ? "means" : context.option(name))},
+    context.option("x"), context.option("y"), {log: false, band: sameLine, measure: measureWithFailures}),
+};
+
+function measureWithFailures(entry, key) {
+  return {key, label: labelOf(key), better: entry.columns[key].better, values: meansWithFailures(entry, key)};
+}
+
+/* Only where both are shares. */
+function sameLine({colours}, drawn, x, y) {
+  const largest = Math.max(...drawn.flatMap(a => [x.values[a], y.values[a]]));
+  if (largest > 1) return [];
+  return [{type: "scatter", mode: "lines", name: "not in the table", showlegend: false, x: [0, 1], y: [0, 1],
+    hoverinfo: "skip", line: {color: colours.line, width: 1, dash: "dot"}}];
+}
+
+export const TRUTH_MATRIX = {
+  id: "truthmatrix", title: "What tells the truth",
+  read: "Spearman’s correlation over the combinations that pass the filter: near 1, a measure that needs no ground truth "
+    + "ranks as the ground truth does. Failed pairs count as 0.",
+  available: hasTruth,
+  draw({entry, shown: rows, theme, narrow}) {
+    const [truths, others] = [truthColumns(entry), inlierColumns(entry)];
+    if (rows.length < 3) return {empty: "A correlation needs three combinations or more."};
+    const z = others.map(other => truths.map(truth => correlationOfMeans(entry, rows, other, truth)));
+    return matrixFigure({x: truths.map(labelOf), y: others.map(labelOf), z, theme, narrow, what: "Spearman"});
+  },
+};
+
+function correlationOfMeans(entry, rows, first, second) {
+  const [x, y] = [meansWithFailures(entry, first), meansWithFailures(entry, second)];
+  const both = rows.filter(a => isKnown(x[a]) && isKnown(y[a]));
+  return spearman(both.map(a => x[a]), both.map(a => y[a]));
+}

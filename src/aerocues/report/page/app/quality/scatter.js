@@ -1,0 +1,96 @@
+/* Two measures against each other: means of combinations, or the density of all pairs. */
+
+import {SCALE} from "../basis/colours.js";
+import {hasColumn, meansOf, measureOf, pairValues} from "../basis/entries.js";
+import {counted, fixed, isKnown} from "../basis/numbers.js";
+import {boundsOf, spanOf, spearman} from "../basis/statistics.js";
+import {axisLabel, logAxis} from "../shell/axes.js";
+import {colourControl} from "../shell/controls.js";
+import {pointsByMethod, scatterFrame} from "../shell/points.js";
+
+export function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
+  const {entry, option, theme, narrow, shown: rows} = context;
+  const each = option("points") === "pairs";
+  const [x, y] = [xName, yName].map(name => (each ? null : measure(entry, name)));
+  const axis = name => ({title: axisLabel(entry, name), tickangle: 0, nticks: narrow ? 5 : 8, ...(log ? logAxis(rows.flatMap(a =>
+    (each ? Array.from(pairValues(entry, name, a)) : [meansOf(entry, name)[a]]))) : {})});
+  const axes = {xaxis: axis(xName), yaxis: axis(yName)};
+  const height = narrow ? 420 : 460;
+  if (each) return densityOfPairs(context, xName, yName, log, axes, height);
+  const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a])
+    && (!log || (x.values[a] > 0 && y.values[a] > 0)));
+  if (!drawn.length) return {empty: "None of these combinations has both values."};
+  return {
+    data: [...(band ? band(context, drawn, x, y) : []), ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
+    height,
+    layout: scatterFrame(axes.xaxis, axes.yaxis, narrow),
+    note: `Spearman’s correlation over ${counted(drawn.length, "combination")}: `
+      + `${fixed(spearman(drawn.map(a => x.values[a]), drawn.map(a => y.values[a])), 2)}.`,
+  };
+}
+
+const BINS = 60;
+
+/* All pairs of all combinations as counts on a grid: tens of thousands of dots would hide each other. */
+function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, height) {
+  const scale = log ? Math.log10 : value => value;
+  const points = [];
+  for (const a of rows) {
+    const [x, y] = [pairValues(entry, xName, a), pairValues(entry, yName, a)];
+    for (let i = 0; i < x.length; i += 1) {
+      const point = [scale(x[i]), scale(y[i])];
+      if (point.every(Number.isFinite)) points.push(point);
+    }
+  }
+  if (!points.length) return {empty: "None of these combinations has both values."};
+  const bounds = [0, 1].map(axis => spanOf(points.map(point => point[axis])));
+  const counts = Array.from({length: BINS}, () => new Array(BINS).fill(0));
+  for (const point of points) {
+    const [i, j] = point.map((value, axis) => Math.min(BINS - 1,
+      Math.floor(BINS * (value - bounds[axis][0]) / (bounds[axis][1] - bounds[axis][0]))));
+    counts[j][i] += 1;
+  }
+  const centres = axis => Array.from({length: BINS}, (_, i) => {
+    const value = bounds[axis][0] + (i + 0.5) * (bounds[axis][1] - bounds[axis][0]) / BINS;
+    return log ? 10 ** value : value;
+  });
+  return {
+    data: [{type: "heatmap", name: "pairs", x: centres(0), y: centres(1), z: counts.map(row => row.map(n => (n ? Math.log10(n) : null))),
+      customdata: counts, colorscale: SCALE, hovertemplate: "%{customdata} pairs<br>%{x:.3g}, %{y:.3g}<extra></extra>",
+      colorbar: {thickness: 10, outlinewidth: 0, title: {text: "pairs", side: "top"}, tickvals: [0, 1, 2, 3, 4],
+        ticktext: ["1", "10", "100", "1000", "10000"], len: narrow ? 0.6 : 0.8}}],
+    height, layout: axes, note: `${points.length.toLocaleString("en")} measurements of single pairs.`,
+  };
+}
+
+const POINTS = {name: "points", label: "Points", fallback: () => "means",
+  options: () => [{key: "means", label: "means of combinations"}, {key: "pairs", label: "density of all pairs"}]};
+
+export const PRECISION_RECALL = {
+  id: "pr", title: "Precision against recall",
+  read: "Up: the share of the matches that are right. Across: the share of the keypoints that find one. Top right "
+    + "is best.",
+  controls: [colourControl("descriptor"), POINTS],
+  available: entry => (precisionRecall(entry) ? true : "Precision and recall were not measured."),
+  draw: context => scatterDraw(context, ...precisionRecall(context.entry), {log: false}),
+};
+
+function precisionRecall(entry) {
+  return [["recall_beyond_chance", "precision_beyond_chance"], ["recall", "precision"]]
+    .find(pair => pair.every(name => hasColumn(entry, name))) ?? null;
+}
+
+export const INLIERS_MATCHES = {
+  id: "im", title: "Inliers against matches",
+  read: "Many matches are worth little if few are right: on the upper line all of them are inliers, on the lower "
+    + "one a tenth. Both axes are logarithmic.",
+  controls: [colourControl("detector"), POINTS],
+  available: entry => (hasColumn(entry, "inliers") && hasColumn(entry, "matches") ? true : "Inliers and matches were not measured."),
+  draw: context => scatterDraw(context, "matches", "inliers", {log: true, band: shareLines}),
+};
+
+function shareLines({colours}, drawn, x) {
+  const [low, high] = boundsOf(drawn.map(a => x.values[a]));
+  return [1, 0.1].map(share => ({type: "scatter", mode: "lines", name: "not in the table", showlegend: false,
+    x: [low, high], y: [share * low, share * high], hoverinfo: "skip", line: {color: colours.line, width: 1, dash: "dot"}}));
+}

@@ -1,0 +1,92 @@
+/* Across data sets and machines. */
+
+import {seriesStyle} from "../basis/colours.js";
+import {saveCsv} from "../basis/downloads.js";
+import {make, plainTable, safe} from "../basis/elements.js";
+import {entries} from "../basis/entries.js";
+import {shownIn} from "../basis/filter.js";
+import {fixed, isKnown, NONE, shown} from "../basis/numbers.js";
+import {payload} from "../basis/payload.js";
+import {scaleControl} from "../shell/controls.js";
+import {lowEnd, matrixFigure} from "../shell/matrix.js";
+
+const NO_COMPARISON = "There is one ranking only; give several results folders to compare them.";
+
+export const RANKINGS_MATRIX = {
+  id: "rankings", title: "Agreement of the rankings", ignoresFilter: true,
+  read: "Rank correlation of every two data sets or machines over the combinations they share: near 1, what is best on one is best on the other.",
+  controls: [{name: "of", label: "By", fallback: () => "spearman", options: () => [
+    {key: "spearman", label: "Spearman"}, {key: "kendall", label: "Kendall’s tau"}]}],
+  available: () => (payload.comparison ? true : NO_COMPARISON),
+  draw({option, theme, narrow}) {
+    const {names: labels, shared} = payload.comparison;
+    const z = payload.comparison[option("of")];
+    const figure = matrixFigure({x: labels, y: labels, z, theme, narrow, what: option("of"), low: lowEnd(z)});
+    const numbers = shared.flatMap((row, i) => row.filter((_, j) => j > i));
+    const [low, high] = boundsOfCounts(numbers);
+    return {...figure, note: `Over ${low === high ? low : `${low} to ${high}`} shared combinations.`};
+  },
+};
+
+function boundsOfCounts(numbers) {
+  return numbers.length ? [Math.min(...numbers), Math.max(...numbers)] : [0, 0];
+}
+
+export const SLOPES = {
+  id: "slopes", title: "Ranks from data set to data set", tall: true,
+  read: "A line is a combination, its height the rank on each data set, 1 at the top. Flat lines hold everywhere; the best by mean score are shown.",
+  controls: [{name: "top", label: "Combinations", fallback: () => "10",
+    options: () => [7, 10, 14].map(size => ({key: String(size), label: `most versatile ${size}`}))},
+  scaleControl("log")],
+  acrossEntries: true,
+  available: () => (payload.comparison ? true : NO_COMPARISON),
+  draw(context) {
+    const {option, theme, narrow} = context;
+    const top = versatile().slice(0, Number(option("top")));
+    if (!top.length) return {empty: "No combination passes the filter."};
+    const labels = payload.comparison.names.map(name => safe(name).replace(" (", "<br>("));
+    const data = top.map((row, i) => {
+      const {color, symbol} = seriesStyle(theme, i);
+      return {type: "scatter", mode: "lines+markers", name: safe(row.alternative), x: labels, y: row.ranks,
+        line: {color, width: 1.8, dash: i < 7 ? "solid" : "dot"}, marker: {color, symbol, size: 8}, connectgaps: true,
+        hovertemplate: `${safe(row.alternative)}<br>%{x}: rank %{y}<extra></extra>`};
+    });
+    return {
+      data, height: narrow ? 460 + 16 * top.length : 460,
+      layout: {hovermode: "closest", xaxis: {type: "category", range: [-0.15, labels.length - 0.85], tickfont: {size: narrow ? 9 : 11}},
+        yaxis: {title: "rank", type: option("scale"), autorange: "reversed", ...(option("scale") === "log" ? {tickvals: [1, 2, 3, 5, 10, 20, 50, 100, 200, 400]} : {})},
+        legend: narrow ? {} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"}},
+    };
+  },
+};
+
+/* Rows of the comparison that pass the filter, in some entry at least. */
+function versatile() {
+  const passed = new Set(entries.flatMap(entry => shownIn(entry).map(a => entry.combinations[a])));
+  return payload.comparison.versatility.filter(row => passed.has(row.alternative));
+}
+
+const VERSATILE_ROWS = 20;
+
+export function versatilityTable() {
+  if (!payload.comparison) return [];
+  const rows = versatile();
+  const labels = payload.comparison.names;
+  const columns = [
+    {label: "Combination", text: row => row.alternative},
+    {label: "Mean CUES", number: true, text: row => fixed(row.mean)},
+    {label: "Least", number: true, text: row => fixed(row.min)},
+    {label: "Spread", number: true, text: row => fixed(row.spread)},
+    {label: "Mean rank", number: true, text: row => shown(row.mean_rank)},
+    {label: "Worst rank", number: true, text: row => shown(row.worst_rank)},
+    ...labels.map((label, i) => ({label, number: true, title: "CUES and rank",
+      text: row => (isKnown(row.scores[i]) ? `${fixed(row.scores[i])} (${shown(row.ranks[i])})` : NONE)})),
+  ];
+  return [make("h3", {}, "Versatility"),
+    make("p", {class: "read"}, "Who is good everywhere: the best mean score first; the spread is the largest minus the smallest. Beside a score stands its rank."),
+    make("div", {class: "controls"}, make("span", {class: "save"}, make("button", {type: "button", class: "quiet",
+      "aria-label": "Save the table of versatility as CSV", onclick: () => saveCsv("versatility",
+        ["combination", "mean", "min", "spread", "mean_rank", "worst_rank", ...labels],
+        rows.map(row => [row.alternative, row.mean, row.min, row.spread, row.mean_rank, row.worst_rank, ...row.scores]))}, "CSV"))),
+    plainTable(`The ${Math.min(rows.length, VERSATILE_ROWS)} most versatile of ${rows.length}`, columns, rows.slice(0, VERSATILE_ROWS))];
+}

@@ -1,0 +1,148 @@
+/* Detector x descriptor, a panel for each norm and matcher. */
+
+import {CIVIDIS, isBrightOnScale, onCividis} from "../basis/colours.js";
+import {makeSvg, withTips} from "../basis/elements.js";
+import {CODES, measureOf} from "../basis/entries.js";
+import {isKnown, percent, valueText} from "../basis/numbers.js";
+import {payload} from "../basis/payload.js";
+import {spanOf} from "../basis/statistics.js";
+import {measureOptions} from "../shell/controls.js";
+import {FONT, widestText} from "../shell/figure.js";
+
+export const HEAT_MAP = {
+  id: "heat", title: "Detector and descriptor", wide: true,
+  read: "A panel for each norm and matcher; brighter is better. Hatched cells cannot run or mean nothing (the "
+    + "reason is shown on hover); empty ones were not measured or do not pass the filter.",
+  controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
+  draw(context) {
+    const {entry, narrow, shown: rows, width} = context;
+    const measure = measureOf(entry, context.option("value"));
+    const known = rows.map(a => measure.values[a]).filter(isKnown);
+    if (!known.length) return {empty: `None of these combinations has a value of ${measure.label}.`};
+    const panels = heatPanels(entry, rows);
+    const heat = {
+      measure, panels, bounds: spanOf(known), detectors: inOrder(entry.detector, rows),
+      descriptors: inOrder(entry.descriptor, rows), columns: narrow || panels.length === 1 ? 1 : 2,
+      at: new Map(rows.map(a => [entry.combinations[a], a])),
+    };
+    const size = heatSize(heat, width, narrow);
+    return {svg: () => heatDrawing(context, heat, size), height: size.height,
+      table: heatTable(context, heat), summary: heatSummary(entry, rows, measure)};
+  },
+};
+
+function inOrder(methods, rows) {
+  const present = new Set(rows.map(a => methods[a]));
+  return [...new Set(methods)].filter(name => present.has(name));
+}
+
+function heatPanels(entry, rows) {
+  const keys = [...new Set(rows.map(a => JSON.stringify([entry.norm[a], entry.matcher[a]])))];
+  return keys.map(key => JSON.parse(key)).sort((a, b) => b[0].localeCompare(a[0]) || a[1].localeCompare(b[1]));
+}
+
+const HEAT_LABEL = 11;
+
+/* Sizes in pixels: of a cell, of the labels and of a panel, which holds its title and both labels. */
+function heatSize({detectors, descriptors, panels, columns}, width, narrow) {
+  const left = widestText(detectors, HEAT_LABEL) + 8;
+  const below = Math.ceil(widestText(descriptors, HEAT_LABEL) * 0.85) + 14;
+  const panelWidth = Math.floor((width - (columns - 1) * 24) / columns);
+  const cell = {width: Math.min(64, (panelWidth - left) / descriptors.length), height: narrow ? 18 : 23};
+  const panelHeight = 24 + detectors.length * cell.height + below;
+  const top = 48;
+  return {width, left, top, cell, panelWidth, panelHeight, titled: 24,
+    height: top + Math.ceil(panels.length / columns) * panelHeight};
+}
+
+function heatShare({measure, bounds: [low, high]}, value) {
+  const share = (value - low) / (high - low);
+  return measure.better === "lower" ? 1 - share : share;
+}
+
+function heatDrawing(context, heat, size) {
+  const {colours} = context;
+  const svg = makeSvg("svg", {class: "main-svg", width: size.width, height: size.height,
+    viewBox: `0 0 ${size.width} ${size.height}`, "font-family": FONT, "font-size": HEAT_LABEL, fill: colours.ink},
+  makeSvg("defs", {},
+    makeSvg("pattern", {id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"},
+      makeSvg("line", {y2: 7, stroke: colours.hatch, "stroke-width": 2})),
+    makeSvg("linearGradient", {id: "scale"}, CIVIDIS.map((_, i) => makeSvg("stop", {
+      offset: i / (CIVIDIS.length - 1), "stop-color": onCividis(i / (CIVIDIS.length - 1))})))),
+  makeSvg("rect", {width: size.width, height: size.height, fill: colours.surface}),
+  scaleBar(heat, size, colours),
+  heat.panels.map((panel, i) => heatPanel(context, heat, size, panel, i)));
+  return withTips(svg);
+}
+
+/* The colours with their ends and middle, the better end at the right. */
+function scaleBar({measure, bounds: [low, high]}, {width}, colours) {
+  const wide = Math.min(320, width - 60);
+  const left = (width - wide) / 2;
+  const ends = measure.better === "lower" ? [high, (low + high) / 2, low] : [low, (low + high) / 2, high];
+  return makeSvg("g", {},
+    makeSvg("text", {x: width / 2, y: 12, "text-anchor": "middle", "font-weight": 600}, measure.label),
+    makeSvg("rect", {x: left, y: 17, width: wide, height: 9, fill: "url(#scale)"}),
+    ends.map((value, i) => makeSvg("text", {x: left + wide * i / 2, y: 38, "text-anchor": "middle", fill: colours.muted},
+      valueText(measure.key, value))));
+}
+
+function heatPanel(context, heat, size, [norm, matcher], i) {
+  const {detectors, descriptors, columns} = heat;
+  const {cell, left, titled} = size;
+  const x = (i % columns) * (size.panelWidth + 24);
+  const y = size.top + Math.floor(i / columns) * size.panelHeight;
+  const foot = titled + detectors.length * cell.height;
+  return makeSvg("g", {transform: `translate(${x} ${y})`},
+    makeSvg("text", {x: left, y: 15, "font-weight": 650, "font-size": 12.5}, `${norm}, ${matcher}`),
+    detectors.map((detector, line) => makeSvg("text", {x: left - 6, y: titled + (line + 0.5) * cell.height + 4,
+      "text-anchor": "end"}, detector)),
+    descriptors.map((descriptor, column) => makeSvg("text", {"text-anchor": "end",
+      transform: `translate(${left + (column + 0.5) * cell.width + 4} ${foot + 10}) rotate(-55)`}, descriptor)),
+    detectors.flatMap((detector, line) => descriptors.map((descriptor, column) => heatCell(context, heat,
+      [detector, descriptor, norm, matcher].join("-"),
+      {x: left + column * cell.width, y: titled + line * cell.height, ...cell}))));
+}
+
+function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
+  const box = {x: x + 0.5, y: y + 0.5, width: width - 1, height: height - 1};
+  const a = heat.at.get(name);
+  if (a === undefined) {
+    const reason = Object.hasOwn(payload.incompatible ?? {}, name) ? payload.incompatible[name] : null;
+    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\nleft out: ${reason}`}) : [];
+  }
+  const value = heat.measure.values[a];
+  const tip = heatTip(entry, heat.measure, a);
+  if (!isKnown(value)) return makeSvg("rect", {...box, fill: "none", stroke: colours.grid, "data-tip": tip});
+  const share = heatShare(heat, value);
+  const rect = makeSvg("rect", {...box, fill: onCividis(share), "data-tip": tip});
+  if (width < 24) return rect;
+  return [rect, makeSvg("text", {x: x + width / 2, y: y + height / 2 + 3.5, "text-anchor": "middle", "font-size": 10,
+    fill: isBrightOnScale(share) ? "#000000" : "#ffffff", "pointer-events": "none"}, cellText(value))];
+}
+
+function heatTip(entry, measure, a) {
+  const rank = isKnown(entry.score.rank[a]) ? `\nrank ${entry.score.rank[a]}` : "";
+  return `${entry.combinations[a]}\n${measure.label}: ${valueText(measure.key, measure.values[a])}${rank}`
+    + `\nsucceeds on ${percent(entry.score.success_rate[a])} of the pairs`;
+}
+
+/* At most four characters. */
+function cellText(value) {
+  if (value >= 10000) return `${Math.round(value / 1000)}k`;
+  if (value >= 1000) return `${(value / 1000).toFixed(1)}k`;
+  if (value >= 10) return String(Math.round(value));
+  return value >= 1 ? value.toFixed(1) : value.toFixed(2).replace(/^0/, "");
+}
+
+function heatTable({entry, shown: rows}, {measure}) {
+  return [[...CODES, measure.key], rows.filter(a => isKnown(measure.values[a]))
+    .map(a => [...CODES.map(code => entry[code][a]), measure.values[a]])];
+}
+
+function heatSummary(entry, rows, measure) {
+  const known = rows.filter(a => isKnown(measure.values[a]));
+  const sign = measure.better === "lower" ? -1 : 1;
+  const best = known.reduce((a, b) => (sign * measure.values[b] > sign * measure.values[a] ? b : a));
+  return `Best by ${measure.label}: ${entry.combinations[best]}, ${valueText(measure.key, measure.values[best])}`;
+}

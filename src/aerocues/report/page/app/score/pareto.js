@@ -1,0 +1,91 @@
+/* Speed against quality, or any two measures, with the front of what nothing beats in both. */
+
+import {safe} from "../basis/elements.js";
+import {measureOf} from "../basis/entries.js";
+import {duration, isKnown, shown} from "../basis/numbers.js";
+import {spanOf} from "../basis/statistics.js";
+import {logAxis} from "../shell/axes.js";
+import {colourControl, measureOptions} from "../shell/controls.js";
+import {isSound, pointsByMethod, scatterFrame} from "../shell/points.js";
+
+const SPEEDS = ["seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
+const QUALITIES = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+
+function firstMeasure(entry, keys) {
+  return keys.find(key => measureOf(entry, key)) ?? "score";
+}
+
+export const PARETO = {
+  id: "pareto", title: "Speed against quality", wide: true,
+  read: "A point is a combination, by its means over the pairs that did not fail. Points on the line are beaten by none in both "
+    + "measures at once. Hollow ones failed too often to count there.",
+  controls: [
+    {name: "x", label: "Across", options: measureOptions,
+      fallback: entry => entry.validation?.pareto?.criteria?.[0] ?? firstMeasure(entry, SPEEDS)},
+    {name: "y", label: "Up", options: measureOptions,
+      fallback: entry => entry.validation?.pareto?.criteria?.[1] ?? firstMeasure(entry, QUALITIES)},
+    colourControl(),
+  ],
+  draw(context) {
+    const {entry, shown: rows, option, narrow, colours, theme} = context;
+    const [x, y] = [measureOf(entry, option("x")), measureOf(entry, option("y"))];
+    const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a]));
+    if (!drawn.length) return {empty: "None of these combinations has both values."};
+    const sound = drawn.filter(a => isSound(entry, a));
+    const front = paretoFront(sound, x, y);
+    const step = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
+      x: front.map(a => x.values[a]), y: front.map(a => y.values[a]), line: {color: colours.line, width: 1.5}};
+    return {
+      data: [step, ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
+      height: narrow ? 480 : 560,
+      layout: {
+        ...scatterFrame(measureAxis(x, drawn), measureAxis(y, drawn), narrow),
+        annotations: front.length ? frontLabels(context, drawn, front, x, y) : [],
+      },
+      note: `Not beaten in both: ${front.map(a => entry.combinations[a]).join(", ")}.`,
+    };
+  },
+};
+
+/* Times and counts that reach over more than a factor of 10 are better seen on a logarithmic axis. */
+function measureAxis(measure, rows) {
+  const values = rows.map(a => measure.values[a]).filter(isKnown);
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const better = measure.better ? ` (${measure.better === "lower" ? "less" : "more"} is better)` : "";
+  const title = safe(`${measure.label}${better}`);
+  const timed = /seconds/.test(measure.key);
+  if (!(timed || isCount(measure.key)) || low <= 0 || high / low < 10) return {title};
+  return {title, ...logAxis(values, timed ? duration : shown)};
+}
+
+function isCount(name) {
+  return /^(inliers|excess_inliers|matches|keypoints_\d|points_3d)$/.test(name);
+}
+
+function paretoFront(rows, x, y) {
+  const sign = measure => (measure.better === "lower" ? -1 : 1);
+  const good = (measure, a) => sign(measure) * measure.values[a];
+  const order = [...rows].sort((a, b) => good(x, b) - good(x, a) || good(y, b) - good(y, a));
+  let best = -Infinity;
+  return order.filter(a => {
+    if (good(y, a) <= best) return false;
+    best = good(y, a);
+    return true;
+  });
+}
+
+/* Names of a few points on the front, so far apart that they do not cover each other. */
+function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
+  const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10(measure.values[a]) : measure.values[a]);
+  const [spanX, spanY] = [x, y].map(measure => spanOf(drawn.map(a => place(measure, a))));
+  const near = (a, b) => Math.abs(place(x, a) - place(x, b)) / (spanX[1] - spanX[0]) * width < 170
+    && Math.abs(place(y, a) - place(y, b)) / (spanY[1] - spanY[0]) * 400 < 26;
+  const picked = [];
+  for (const a of [front[0], front[front.length - 1], ...front]) {
+    if (picked.length < (narrow ? 3 : 7) && !picked.some(b => near(a, b))) picked.push(a);
+  }
+  return picked.map((a, i) => ({
+    x: place(x, a), y: place(y, a), text: safe(entry.combinations[a]), showarrow: true, arrowhead: 0, arrowwidth: 1,
+    arrowcolor: colours.line, ax: x.better === "lower" ? -30 : 30, ay: i % 2 ? -34 : -16, font: {size: 10, color: colours.muted},
+  }));
+}

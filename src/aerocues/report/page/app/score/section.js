@@ -1,0 +1,18 @@
+/* Section 2: the score itself. */
+
+import {COMPONENTS} from "./components.js";
+import {HEAT_MAP} from "./heat-map.js";
+import {PARETO} from "./pareto.js";
+import {SCORE_DOTS} from "./score-dots.js";
+import {WEIGHTS} from "./weights.js";
+import {addFigure} from "../shell/figure.js";
+
+export const SCORE_SECTION = {
+  id: "score",
+  title: "CUES",
+  read: "Where good scores come from: which detector goes with which descriptor, how far the best are apart, "
+    + "what the criteria weigh, and what speed costs in quality.",
+  build(body) {
+    for (const spec of [HEAT_MAP, SCORE_DOTS, WEIGHTS, COMPONENTS, PARETO]) addFigure(body, spec);
+  },
+};

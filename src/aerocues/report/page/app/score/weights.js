@@ -1,0 +1,36 @@
+/* What the criteria weigh, by each method. */
+
+import {seriesStyle, SYMBOLS} from "../basis/colours.js";
+import {safe} from "../basis/elements.js";
+import {labelOf} from "../basis/numbers.js";
+import {categoryAxis, heightOfRows} from "../shell/axes.js";
+
+export const WEIGHTS = {
+  id: "weights", title: "Weights of the criteria", ignoresFilter: true,
+  read: "The weights come from the data: a criterion that tells the combinations apart weighs more. Dots are the "
+    + "methods of weighting, the bar is their aggregate, which counts.",
+  available: entry => (entry.score.weights?.methods?.length ? true : "There are no weights."),
+  draw({entry, colours, theme}) {
+    const {methods, values} = entry.score.weights;
+    const criteria = entry.score.criteria.map(each => safe(labelOf(each.name)));
+    const aggregate = methods[methods.length - 1];
+    const traces = methods.slice(0, -1).map((method, i) => ({
+      type: "scatter", mode: "markers", name: safe(methodLabel(method)), x: values[method], y: criteria,
+      marker: {color: seriesStyle(theme, i).color, symbol: SYMBOLS[i % SYMBOLS.length], size: 8,
+        line: {width: 1, color: colours.surface}},
+      hovertemplate: "%{y}<br>%{x:.3f}<extra>%{fullData.name}</extra>",
+    }));
+    const bar = {type: "bar", orientation: "h", name: "aggregate", x: values[aggregate], y: criteria, width: 0.62,
+      marker: {color: colours.faint}, hovertemplate: "%{y}<br>%{x:.3f}<extra>aggregate</extra>"};
+    return {
+      data: [bar, ...traces], height: heightOfRows(criteria.length * 1.4, 100),
+      layout: {xaxis: {title: "weight", rangemode: "tozero"}, yaxis: categoryAxis(criteria), hovermode: "closest"},
+      note: entry.score.criteria.some(each => each.reconstruction)
+        ? "Some criteria are of the 3D reconstruction, one value a combination." : null,
+    };
+  },
+};
+
+function methodLabel(name) {
+  return {pca: "PCA", critic: "CRITIC", critic_published: "CRITIC, as published"}[name] ?? name.replaceAll("_", " ");
+}

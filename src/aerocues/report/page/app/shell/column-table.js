@@ -1,0 +1,143 @@
+/* A table with a row a combination: sorted by its headings, with columns to choose and a file to save.
+
+   A table is {id, title, prefix, natural, columns(entry), rows(entry), downFirst(entry, column), read(entry),
+   isMarked(entry, a), context(entry, drawn)}. A column is {key, label, title, value(a), text(a), cell(a, context),
+   number, usual}: `usual` ones are shown at first. `rows` come in the order of the column `natural`. What is
+   sorted and shown stands in the state under `prefix`. */
+
+import {fileStem, saveCsv} from "../basis/downloads.js";
+import {announce, disclosure, make} from "../basis/elements.js";
+import {counted} from "../basis/numbers.js";
+import {currentEntry, state} from "../basis/state.js";
+
+const ROWS_AT_FIRST = 15;
+
+export function addColumnTable(parent, spec) {
+  const table = {...spec, element: make("table", {class: "ranking", id: spec.id}),
+    chooser: make("div", {class: "chooser"}), more: make("div", {class: "more"}), words: make("p", {class: "read"})};
+  parent.append(
+    make("h3", {id: `title-${spec.id}`}, spec.title), table.words,
+    make("div", {class: "controls"},
+      disclosure("Columns", table.chooser),
+      make("span", {class: "save"}, make("button", {type: "button", class: "quiet", id: `save-${spec.id}`,
+        "aria-label": `Save the table “${spec.title}” as CSV`, onclick: () => saveColumnTable(table)}, "CSV"))),
+    make("div", {class: "scroll", tabindex: "0", role: "region", "aria-labelledby": `title-${spec.id}`}, table.element),
+    table.more);
+  return table;
+}
+
+function shownColumns(table, entry) {
+  const all = table.columns(entry);
+  const wanted = state.get(`${table.prefix}columns`).split(",").filter(Boolean);
+  const picked = all.filter(column => wanted.includes(column.key));
+  return picked.length ? picked : all.filter(column => column.usual);
+}
+
+function sortOrder({prefix, natural}) {
+  const text = state.get(`${prefix}sort`, natural);
+  return text.startsWith("-") ? {key: text.slice(1), down: true} : {key: text, down: false};
+}
+
+/* Rows in the order that was asked for; what has no value comes last. */
+function sortedRows(table, entry) {
+  const {key, down} = sortOrder(table);
+  const column = table.columns(entry).find(each => each.key === key);
+  const rows = [...table.rows(entry)];
+  if (!column || (key === table.natural && !down)) return rows;
+  const known = rows.filter(a => column.value(a) !== null);
+  const lacking = rows.filter(a => column.value(a) === null);
+  const compare = column.number
+    ? (a, b) => column.value(a) - column.value(b)
+    : (a, b) => compareTexts(String(column.value(a)), String(column.value(b)));
+  known.sort((a, b) => (down ? compare(b, a) : compare(a, b)));
+  return [...known, ...lacking];
+}
+
+function compareTexts(first, second) {
+  const [a, b] = [first.toLowerCase(), second.toLowerCase()];
+  return a < b ? -1 : Number(a > b);
+}
+
+export function updateColumnTable(table, changed) {
+  const entry = currentEntry();
+  const columns = shownColumns(table, entry);
+  const rows = sortedRows(table, entry);
+  const asked = state.get(`${table.prefix}rows`, ROWS_AT_FIRST);
+  const limit = asked === "all" ? rows.length : Number(asked);
+  if (changed.has("entry") || changed.has(`${table.prefix}columns`)) updateChooser(table, entry, columns);
+  table.words.textContent = table.read(entry);
+  const drawn = rows.slice(0, limit);
+  const context = table.context?.(entry, drawn);
+  table.element.replaceChildren(
+    make("thead", {}, make("tr", {}, columns.map(column => headCell(table, column)))),
+    make("tbody", {}, drawn.map(a => make("tr", {class: table.isMarked?.(entry, a) ? "equal" : null},
+      rowCells(columns, a, context)))));
+  if (!rows.length) {
+    table.element.append(make("tbody", {}, make("tr", {}, make("td", {colspan: columns.length},
+      "No combination passes the filter."))));
+  }
+  updateMore(table, rows.length, limit);
+}
+
+function headCell(table, column) {
+  const {key, down} = sortOrder(table);
+  const sorted = key === column.key ? (down ? "descending" : "ascending") : null;
+  const button = make("button", {type: "button", title: column.title, onclick: () => sortBy(table, column)}, column.label);
+  return make("th", {scope: "col", class: column.number ? "number" : null, "data-key": column.key,
+    "aria-sort": sorted}, button);
+}
+
+/* First click: the better end first; second: the other. */
+function sortBy(table, column) {
+  const {key, down} = sortOrder(table);
+  const next = key === column.key ? !down : table.downFirst(currentEntry(), column);
+  state.set({[`${table.prefix}sort`]: column.key === table.natural && !next ? null : `${next ? "-" : ""}${column.key}`});
+  table.element.querySelector(`th[data-key="${CSS.escape(column.key)}"] button`)?.focus();
+  announce(`Sorted by ${column.label}, ${next ? "descending" : "ascending"}.`);
+}
+
+/* Cells in the order of the columns; the name of the combination heads the row. */
+function rowCells(columns, a, context) {
+  return columns.map(column => {
+    const content = column.cell?.(a, context) ?? column.text(a);
+    return column.key === "combination"
+      ? make("th", {scope: "row"}, content)
+      : make("td", {class: column.number ? "number" : column.kind}, content);
+  });
+}
+
+function updateMore(table, count, limit) {
+  const button = (label, rows) => make("button", {type: "button", class: "quiet",
+    onclick: () => state.set({[`${table.prefix}rows`]: rows})}, label);
+  table.more.replaceChildren(
+    `${Math.min(limit, count)} of ${counted(count, "row")} `,
+    ...(count > limit ? [
+      limit < 50 && count > 50 ? button("Show 50", "50") : "", button(`Show all ${count}`, "all")] : []),
+    ...(state.get(`${table.prefix}rows`) ? [button("Show fewer", null)] : []));
+}
+
+function updateChooser(table, entry, columns) {
+  const picked = new Set(columns.map(column => column.key));
+  table.chooser.replaceChildren(
+    ...table.columns(entry).map(column => make("label", {title: column.title},
+      make("input", {type: "checkbox", checked: picked.has(column.key),
+        onchange: event => pickColumn(table, entry, column.key, event.target.checked)}), column.label)),
+    make("button", {type: "button", class: "quiet",
+      onclick: () => state.set({[`${table.prefix}columns`]: null})}, "Usual columns"));
+}
+
+function pickColumn(table, entry, key, wanted) {
+  const picked = new Set(shownColumns(table, entry).map(column => column.key));
+  if (wanted) picked.add(key);
+  else picked.delete(key);
+  const columns = table.columns(entry).map(column => column.key);
+  state.set({[`${table.prefix}columns`]: columns.filter(each => picked.has(each)).join(",")});
+  table.chooser.querySelectorAll("input")[columns.indexOf(key)]?.focus();
+}
+
+function saveColumnTable(table) {
+  const entry = currentEntry();
+  const columns = table.columns(entry);
+  saveCsv(fileStem(entry.name, table.id), columns.map(column => column.key),
+    sortedRows(table, entry).map(a => columns.map(column => column.value(a))));
+}

@@ -1,0 +1,253 @@
+/* Figures: drawn when scrolled into view, drawn anew when the view changes, saved on request.
+
+   A figure is {id, title, read, controls, available(entry), draw(context)}. `read` says how to read
+   it. `available` gives true or the reason why there is nothing. `draw` gives {data, layout, height,
+   note} for Plotly, {svg(), height, table} or {empty: reason}, where context = {entry, shown, width, narrow, theme, colours, option}. */
+
+import {themeName, THEMES} from "../basis/colours.js";
+import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
+import {announce, make} from "../basis/elements.js";
+import {CODES} from "../basis/entries.js";
+import {shownIn} from "../basis/filter.js";
+import {isKnown} from "../basis/numbers.js";
+import {bytesOf} from "../basis/payload.js";
+import {currentEntry} from "../basis/state.js";
+import {selectControl} from "./controls.js";
+
+export const figures = [];
+const NARROW = 480;
+const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
+const touched = window.matchMedia("(pointer: coarse)");
+
+export function addFigure(parent, spec) {
+  const plot = make("div", {class: "plot", role: "img", "aria-label": spec.title});
+  const note = make("p", {class: "note", hidden: true});
+  const controls = (spec.controls ?? []).map(control => selectControl(spec.id, control));
+  const save = format => make("button", {
+    type: "button", class: "quiet", "aria-label": `Save “${spec.title}” as ${format}`,
+    onclick: () => saveFigure(figure, format),
+  }, format);
+  const element = make("figure", {class: `figure ${spec.wide ? "wide" : ""} ${spec.tall ? "tall" : ""}`, id: `figure-${spec.id}`},
+    make("figcaption", {},
+      make("h3", {}, spec.title),
+      make("p", {class: "read"}, spec.read)),
+    make("div", {class: "controls"}, controls.map(control => control.element),
+      make("span", {class: "save"}, ["SVG", "PNG", "CSV"].map(save))),
+    plot, note);
+  const figure = {
+    ...spec, element, plot, noteElement: note, controls: Object.fromEntries(
+      controls.map((control, i) => [spec.controls[i].name, control])),
+    stale: true, near: false, width: 0, redraw: () => drawFigure(figure),
+  };
+  parent.append(element);
+  figures.push(figure);
+  whenNear.observe(element);
+  onResize.observe(element);
+  return figure;
+}
+
+function figureContext(figure, width, theme) {
+  const entry = currentEntry();
+  return {
+    entry, width, theme, narrow: width < NARROW, colours: THEMES[theme], shown: shownIn(entry),
+    option: name => figure.controls[name].value(),
+  };
+}
+
+function describeFigure(figure, context) {
+  const reason = figure.available?.(context.entry) ?? true;
+  if (reason !== true) return {empty: reason};
+  if (!context.shown.length && !figure.ignoresFilter && !figure.acrossEntries) return {empty: "No combination passes the filter."};
+  return figure.draw(context);
+}
+
+export function drawFigure(figure) {
+  const width = Math.floor(figure.plot.clientWidth);
+  if (!width || !window.Plotly) return;
+  Object.assign(figure, {stale: false, width});
+  for (const control of Object.values(figure.controls)) control.refresh();
+  const context = figureContext(figure, width, themeName());
+  const drawn = describeFigure(figure, context);
+  figure.element.classList.toggle("empty", Boolean(drawn.empty));
+  showNote(figure, drawn);
+  if (drawn.empty) {
+    if (figure.plot.classList.contains("js-plotly-plot")) Plotly.purge(figure.plot);
+    figure.plot.replaceChildren(make("p", {class: "nothing"}, drawn.empty));
+    figure.plot.style.height = "auto";
+    return;
+  }
+  if (drawn.svg) {
+    figure.plot.style.height = `${drawn.height}px`;
+    figure.plot.replaceChildren(drawn.svg());
+    return;
+  }
+  if (!figure.plot.classList.contains("js-plotly-plot")) figure.plot.replaceChildren();
+  figure.plot.style.height = `${drawn.height}px`;
+  Plotly.react(figure.plot, drawn.data, fullLayout(drawn, context), CONFIG);
+}
+
+function showNote(figure, drawn) {
+  figure.noteElement.hidden = !drawn.note;
+  figure.noteElement.textContent = drawn.note ?? "";
+  figure.plot.setAttribute("aria-label", [figure.title, drawn.summary ?? drawn.note ?? drawn.empty]
+    .filter(Boolean).join(". "));
+}
+
+function fullLayout({layout, height}, {width, narrow, colours}) {
+  const axis = {
+    gridcolor: colours.grid, linecolor: colours.line, zerolinecolor: colours.line, zeroline: false,
+    tickcolor: colours.line, automargin: true,
+  };
+  const base = {
+    width, height, autosize: false, paper_bgcolor: colours.surface, plot_bgcolor: colours.surface,
+    font: {family: FONT, size: narrow ? 11 : 12, color: colours.ink},
+    margin: {l: 8, r: narrow ? 8 : 16, t: 8, b: 8, pad: 2},
+    hoverlabel: {bgcolor: colours.surface, bordercolor: colours.line,
+      font: {color: colours.ink, size: 12}, align: "left"},
+    dragmode: touched.matches ? false : "zoom",
+    legend: {orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom",
+      font: {size: narrow ? 10.5 : 11.5}, itemsizing: "constant"},
+    transition: {duration: 0},
+  };
+  const merged = {...base, ...layout};
+  for (const part of ["margin", "legend", "font", "hoverlabel"]) {
+    merged[part] = {...base[part], ...layout[part]};
+  }
+  for (const name of Object.keys(layout).filter(key => /^[xy]axis\d*$/.test(key))) {
+    merged[name] = withAxis(axis, layout[name]);
+  }
+  return merged.yaxis2 ? merged : withKnownMargins(merged);
+}
+
+/* Margins worked out here: to have Plotly find them, it draws everything twice or more. */
+function withKnownMargins(layout) {
+  const {xaxis, yaxis, margin} = layout;
+  if (xaxis?.type !== "category" && xaxis?.automargin) {
+    Object.assign(margin, {b: xaxis.title?.text ? 46 : 28});
+    xaxis.automargin = false;
+  }
+  if (yaxis?.type === "category" && yaxis.automargin) {
+    margin.l = widestText(yaxis.categoryarray.map(unsafe), yaxis.tickfont?.size ?? 12) + 10;
+    yaxis.automargin = false;
+  }
+  return layout;
+}
+
+const ruler = document.createElement("canvas").getContext("2d");
+export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
+
+export function widestText(texts, size) {
+  ruler.font = `${size}px ${FONT}`;
+  return Math.ceil(Math.max(0, ...texts.map(text => ruler.measureText(text).width)));
+}
+
+function withAxis(axis, own) {
+  const title = typeof own.title === "string" ? {text: own.title} : own.title;
+  return {...axis, ...own, title};
+}
+
+/* Saved figures are in the light theme, as paper is. */
+async function saveFigure(figure, format) {
+  const width = Math.max(figure.width || 0, 900);
+  const context = figureContext(figure, width, "light");
+  const drawn = describeFigure(figure, context);
+  if (drawn.empty) return announce(drawn.empty);
+  const stem = fileStem(context.entry.name, figure.title);
+  if (format === "CSV") return saveCsv(stem, ...(drawn.table ?? tableOfTraces(drawn.data)));
+  if (drawn.svg) return saveDrawing(drawn.svg(), stem, format);
+  const layout = fullLayout(drawn, context);
+  const kind = format.toLowerCase();
+  const url = await Plotly.toImage({data: drawn.data, layout, config: CONFIG},
+    {format: kind, width, height: drawn.height, scale: kind === "png" ? 2 : 1});
+  const content = kind === "svg"
+    ? decodeURIComponent(url.slice(url.indexOf(",") + 1))
+    : new Blob([bytesOf(url.slice(url.indexOf(",") + 1))], {type: "image/png"});
+  return saveFile(`${stem}.${kind}`, content, "image/svg+xml");
+}
+
+async function saveDrawing(svg, stem, format) {
+  const text = new XMLSerializer().serializeToString(svg);
+  if (format === "SVG") return saveFile(`${stem}.svg`, text, "image/svg+xml");
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await image.decode();
+  const canvas = make("canvas", {width: 2 * image.width, height: 2 * image.height});
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toBlob(blob => saveFile(`${stem}.png`, blob));
+}
+
+/* The points of a figure as a table, for those who would rather have numbers. */
+function tableOfTraces(traces) {
+  const plain = value => (typeof value === "string" ? unsafe(value) : value);
+  const rows = [];
+  for (const trace of traces.filter(each => each.name !== "not in the table")) {
+    const label = plain(trace.name ?? "");
+    if (trace.z) {
+      trace.z.forEach((row, i) => row.forEach((value, j) => {
+        if (isKnown(value)) rows.push([label, plain(trace.x[j]), plain(trace.y[i]), value]);
+      }));
+      continue;
+    }
+    (trace.y ?? trace.x).forEach((_, i) => {
+      rows.push([label, plain(trace.x[i]), plain(trace.y[i]), plain(trace.ids?.[i] ?? "")]);
+    });
+  }
+  return [["series", "x", "y", "value_or_name"], rows];
+}
+
+function unsafe(text) {
+  return text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
+}
+
+/* Marks figures as out of date and draws those near the window, one a frame, those in it first. */
+export function refreshFigures(changed) {
+  for (const figure of figures) {
+    if ([...changed].some(key => concerns(key, figure))) figure.stale = true;
+  }
+  drawStale();
+}
+
+const OF_THE_TABLE = ["sort", "columns", "rows"];
+
+/* Whether a figure shows what a key of the state stands for. */
+function concerns(key, figure) {
+  if (OF_THE_TABLE.includes(key)) return false;
+  if (key === "q" || CODES.includes(key)) return !figure.ignoresFilter;
+  return !key.includes(".") || key.startsWith(`${figure.id}.`);
+}
+
+let drawing = false;
+
+export function drawStale() {
+  if (drawing || !window.Plotly) return;
+  const waiting = figures.filter(figure => figure.stale && figure.near && figure.plot.clientWidth);
+  if (!waiting.length) return;
+  const next = waiting.find(isInWindow) ?? waiting[0];
+  drawing = true;
+  requestAnimationFrame(() => {
+    drawing = false;
+    drawFigure(next);
+    drawStale();
+  });
+}
+
+function isInWindow({plot}) {
+  const {top, bottom} = plot.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
+}
+
+const whenNear = new IntersectionObserver(seen => {
+  for (const {target, isIntersecting} of seen) {
+    const figure = figures.find(each => each.element === target);
+    if (figure) figure.near = isIntersecting;
+  }
+  drawStale();
+}, {rootMargin: "0px 0px 400px"});
+
+const onResize = new ResizeObserver(seen => {
+  for (const {target} of seen) {
+    const figure = figures.find(each => each.element === target);
+    if (figure?.width && figure.plot.clientWidth && figure.plot.clientWidth !== figure.width) figure.stale = true;
+  }
+  drawStale();
+});

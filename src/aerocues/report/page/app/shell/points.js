@@ -1,0 +1,42 @@
+/* Clouds of points, one a combination, in colours by method. */
+
+import {seriesStyle} from "../basis/colours.js";
+import {safe} from "../basis/elements.js";
+import {fixed, isKnown, percent, shown, valueText} from "../basis/numbers.js";
+import {names} from "./axes.js";
+
+/* Axes, margins and legend of a cloud of points. The margins are given, as to have Plotly find them
+   takes it twice the time. */
+export function scatterFrame(xaxis, yaxis, narrow) {
+  return {
+    xaxis: {...xaxis, automargin: false}, yaxis: {...yaxis, automargin: false}, hovermode: "closest",
+    margin: narrow ? {l: 54, b: 44} : {l: 62, b: 48, r: 104},
+    legend: narrow ? {} : {orientation: "v", x: 1.01, y: 1, yanchor: "top"},
+  };
+}
+
+/* Means leave failed pairs out, so what fails on the hard ones looks good: a success rate near the
+   best score's is asked for. */
+export function isSound(entry, a) {
+  const {success_rate: success, best, settings} = entry.score;
+  return !isKnown(success[best]) || success[a] >= (settings?.good ?? 0.9) * success[best];
+}
+
+export function pointsByMethod(entry, rows, code, x, y, theme) {
+  const groups = [...new Set(entry[code])];
+  return groups.map((name, i) => {
+    const members = rows.filter(a => entry[code][a] === name);
+    const {color, symbol, outline} = seriesStyle(theme, i);
+    return {
+      type: "scatter", mode: "markers", name: safe(name), x: members.map(a => x.values[a]),
+      y: members.map(a => y.values[a]), ids: names(entry, members), marker: {color, symbol: members.map(a => (isSound(entry, a) ? symbol : outline)), size: 8, opacity: 0.85},
+      hovertext: members.map(a => pointText(entry, a, x, y)), hoverinfo: "text",
+    };
+  }).filter(trace => trace.x.length);
+}
+
+function pointText(entry, a, ...measures) {
+  return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
+    `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`
+    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, succeeds on ${percent(entry.score.success_rate[a])}`;
+}

@@ -1,0 +1,170 @@
+/* The shell of the page: masthead, toolbar with filter, chips and contents, and the sections. */
+
+import {themeName} from "../basis/colours.js";
+import {make} from "../basis/elements.js";
+import {CODES, entries} from "../basis/entries.js";
+import {chosenChips, isFiltered, shownIn, unknownWords} from "../basis/filter.js";
+import {listed} from "../basis/numbers.js";
+import {payload} from "../basis/payload.js";
+import {currentEntry, state} from "../basis/state.js";
+
+const sections = [];
+
+/* A section: {id, title, read, build(body), available(entry), update(body, changed)}. */
+export function addSection(spec) {
+  sections.push(spec);
+}
+
+export function buildMasthead() {
+  const {title, made, version} = payload;
+  const day = String(made).replace("T", " ").slice(0, 16);
+  document.getElementById("masthead").append(
+    make("div", {}, make("h1", {}, title),
+      make("p", {class: "byline"}, `Detectors, descriptors and matchers compared by aerocues ${version}, ${day}`)));
+  document.getElementById("colophon").append(
+    `Made by aerocues ${version}. This page is one file: it works offline and sends nothing anywhere.`);
+}
+
+export function buildToolbar() {
+  const filter = make("input", {
+    type: "search", id: "filter", placeholder: "orb -flann", autocomplete: "off",
+    spellcheck: "false", "aria-describedby": "filter-help filter-count",
+    oninput: () => state.set({q: filter.value.trim() ? filter.value : null}),
+  });
+  const clear = make("button", {type: "button", class: "quiet", id: "filter-clear", onclick: () => {
+    state.set({q: null, ...Object.fromEntries(CODES.map(code => [code, null]))});
+    filter.focus();
+  }}, "Clear");
+  const themes = make("button", {type: "button", class: "quiet", id: "theme", onclick: () =>
+    state.set({theme: themeName() === "dark" ? "light" : "dark"})});
+  document.getElementById("toolbar").append(
+    make("div", {class: "bar"},
+      buildEntryChoice(),
+      make("label", {class: "filter", for: "filter"}, make("span", {class: "word"}, "Filter"), filter),
+      make("output", {id: "filter-count", for: "filter"}),
+      clear, buildChips(), themes),
+    make("p", {class: "hint", id: "filter-help"}),
+    make("nav", {"aria-label": "Sections", id: "contents"}, sections.map(section =>
+      make("a", {href: `#${section.id}`, onclick: event => { event.preventDefault(); goTo(section.id); }},
+        section.title))));
+  return {filter, clear, themes};
+}
+
+function buildEntryChoice() {
+  if (entries.length < 2) return null;
+  const select = make("select", {id: "entry", onchange: () =>
+    state.set({entry: select.value === entries[0].name ? null : select.value})},
+  entries.map(entry => make("option", {value: entry.name}, entry.name)));
+  return make("label", {class: "control", for: "entry"}, make("span", {class: "word"}, "Data set"), select);
+}
+
+function buildChips() {
+  const groups = CODES.map(code => {
+    const names = [...new Set(entries.flatMap(entry => entry[code]))];
+    return make("div", {class: "chips", role: "group", "aria-label": code},
+      make("span", {class: "chip-title"}, code),
+      names.map(name => make("button", {
+        type: "button", class: "chip", "data-code": code, "data-name": name, "aria-pressed": "false",
+        onclick: () => toggleChip(code, name),
+      }, name)));
+  });
+  const panel = make("details", {class: "methods", id: "methods"},
+    make("summary", {id: "methods-summary"}, "Methods"),
+    make("div", {class: "panel"}, groups));
+  closeByLeaving(panel);
+  return panel;
+}
+
+/* Escape, and a click elsewhere, close an open panel. */
+function closeByLeaving(panel) {
+  document.addEventListener("click", event => {
+    if (!panel.contains(event.target)) panel.open = false;
+  });
+  panel.addEventListener("keydown", event => {
+    if (event.key !== "Escape" || !panel.open) return;
+    panel.open = false;
+    panel.querySelector("summary").focus();
+  });
+}
+
+function toggleChip(code, name) {
+  const chips = chosenChips(code);
+  if (!chips.delete(name)) chips.add(name);
+  state.set({[code]: [...chips].join(",")});
+}
+
+export function buildSections() {
+  const main = document.getElementById("sections");
+  for (const section of sections) {
+    section.body = make("div", {class: "body"});
+    section.element = make("section", {id: section.id, "aria-labelledby": `title-${section.id}`},
+      make("h2", {id: `title-${section.id}`, tabindex: "-1"}, section.title),
+      make("p", {class: "read"}, section.read), section.body);
+    main.append(section.element);
+    section.build?.(section.body);
+  }
+}
+
+export function goTo(id) {
+  const element = document.getElementById(id);
+  if (!element) return;
+  // At once: on a slow way there, figures would be drawn, grow and shift the place.
+  element.scrollIntoView({behavior: "instant", block: "start"});
+  element.querySelector("h2")?.focus({preventScroll: true});
+}
+
+export function updateToolbar({filter, clear, themes}) {
+  const entry = currentEntry();
+  const shownNow = shownIn(entry).length;
+  const unknown = unknownWords();
+  if (document.activeElement !== filter || filter.value.trim() !== state.get("q").trim()) {
+    filter.value = state.get("q");
+  }
+  const select = document.getElementById("entry");
+  if (select) select.value = entry.name;
+  clear.hidden = !isFiltered();
+  document.getElementById("filter-count").textContent =
+    `${shownNow} of ${entry.combinations.length}`;
+  document.getElementById("filter-help").textContent = unknown.length
+    ? `No combination has a part that begins with ${listed(unknown.map(word => `“${word}”`), "or")}.`
+    : "“orb -flann”: with ORB, without FLANN. “or sift daisy”: with SIFT or DAISY. “not l2”: without L2. Filters everything below.";
+  document.getElementById("filter-help").classList.toggle("warning", unknown.length > 0);
+  themes.textContent = themeName() === "dark" ? "Light" : "Dark";
+  themes.setAttribute("aria-label", `Show in ${themeName() === "dark" ? "light" : "dark"} colours`);
+  updateChips(entry);
+}
+
+function updateChips(entry) {
+  let count = 0;
+  for (const chip of document.querySelectorAll(".chip")) {
+    const {code, name} = chip.dataset;
+    const pressed = chosenChips(code).has(name);
+    count += pressed ? 1 : 0;
+    chip.setAttribute("aria-pressed", String(pressed));
+    chip.classList.toggle("absent", !entry[code].includes(name));
+  }
+  document.getElementById("methods-summary").textContent = count ? `Methods (${count})` : "Methods";
+}
+
+export function updateSections(changed) {
+  const entry = currentEntry();
+  for (const section of sections) {
+    const available = section.available?.(entry) ?? true;
+    section.element.hidden = available !== true;
+    const link = document.querySelector(`#contents a[href="#${section.id}"]`);
+    link.hidden = available !== true;
+    if (available === true) section.update?.(section.body, changed);
+  }
+}
+
+/* Marks the section in view in the contents. */
+export function followScrolling() {
+  const observer = new IntersectionObserver(seen => {
+    for (const {target, isIntersecting} of seen) {
+      const link = document.querySelector(`#contents a[href="#${target.id}"]`);
+      if (isIntersecting) link.setAttribute("aria-current", "true");
+      else link.removeAttribute("aria-current");
+    }
+  }, {rootMargin: "-35% 0px -60% 0px"});
+  for (const section of sections) observer.observe(section.element);
+}

@@ -1,0 +1,63 @@
+/* Starts the page: tables at once, figures as soon as Plotly, which comes last, is there. */
+
+import {applyTheme, darkWanted} from "./basis/colours.js";
+import {state} from "./basis/state.js";
+import {refreshClouds} from "./models/clouds.js";
+import {ANSWER_SECTION} from "./answer/section.js";
+import {SCORE_SECTION} from "./score/section.js";
+import {QUALITY_SECTION} from "./quality/section.js";
+import {TIME_SECTION} from "./time/section.js";
+import {RELATIONS_SECTION} from "./relations/section.js";
+import {PICTURES_SECTION} from "./pictures/section.js";
+import {MODELS_SECTION} from "./models/section.js";
+import {METHOD_SECTION} from "./method/section.js";
+import {drawFigure, drawStale, figures, refreshFigures} from "./shell/figure.js";
+import {addSection, buildMasthead, buildSections, buildToolbar, followScrolling, goTo, updateSections, updateToolbar} from "./shell/shell.js";
+
+/* In the order of the page. */
+const SECTIONS = [ANSWER_SECTION, SCORE_SECTION, QUALITY_SECTION, TIME_SECTION, RELATIONS_SECTION, PICTURES_SECTION,
+  MODELS_SECTION, METHOD_SECTION];
+
+function start() {
+  for (const section of SECTIONS) addSection(section);
+  state.read();
+  applyTheme();
+  buildMasthead();
+  buildSections();
+  const toolbar = buildToolbar();
+  const update = changed => {
+    applyTheme();
+    updateToolbar(toolbar);
+    updateSections(changed);
+    refreshFigures(changed);
+  };
+  update(new Set(["entry"]));
+  state.onChange(update);
+  window.addEventListener("hashchange", () => {
+    const changed = state.read();
+    if (changed.size) update(changed);
+    else goTo(location.hash.slice(1));
+  });
+  darkWanted.addEventListener("change", () => update(new Set(["theme"])));
+  followScrolling();
+  document.addEventListener("DOMContentLoaded", drawStale);
+  window.addEventListener("beforeprint", drawForPrint);
+  window.addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("printing");
+    applyTheme();
+    refreshClouds();
+    for (const figure of figures) figure.stale = true;
+    drawStale();
+  });
+  if (location.hash && !location.hash.includes("=")) goTo(location.hash.slice(1));
+}
+
+/* Paper is light and narrow, and shows every figure, seen or not. */
+function drawForPrint() {
+  document.documentElement.classList.add("printing");
+  applyTheme();
+  refreshClouds();
+  for (const figure of figures) drawFigure(figure);
+}
+
+start();

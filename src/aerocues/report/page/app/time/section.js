@@ -1,0 +1,20 @@
+/* Section 4: time. */
+
+import {hasColumn} from "../basis/entries.js";
+import {isKnown} from "../basis/numbers.js";
+import {addFigure} from "../shell/figure.js";
+import {BY_METHOD, MATCHERS} from "./by-method.js";
+import {MACHINES} from "./machines.js";
+import {PER_THOUSAND} from "./per-thousand.js";
+import {STAGES_FIGURE} from "./stages.js";
+
+export const TIME_SECTION = {
+  id: "time",
+  title: "Time",
+  read: "What a combination costs: detecting and describing one image, matching and verifying one pair, on one core. "
+    + "Medians over the pairs.",
+  available: entry => entry.medians?.total?.some(isKnown) || hasColumn(entry, "total_seconds"),
+  build(body) {
+    for (const spec of [STAGES_FIGURE, PER_THOUSAND, BY_METHOD, MATCHERS, MACHINES]) addFigure(body, spec);
+  },
+};

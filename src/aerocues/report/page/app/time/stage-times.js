@@ -1,0 +1,35 @@
+/* Times of the stages, and axes and orders by them. */
+
+import {mediansOf} from "../basis/entries.js";
+import {duration, isKnown} from "../basis/numbers.js";
+import {logAxis} from "../shell/axes.js";
+
+export const STAGES = ["detect", "describe", "match", "verify"];
+
+export function hasStages(entry) {
+  return STAGES.some(stage => entry.medians?.[stage]?.some(isKnown))
+    ? true : "Only total times are known, not those of the stages.";
+}
+
+export function stageColour(colours, stage) {
+  return {detect: colours.series[0], describe: colours.series[1], match: colours.series[2], verify: colours.series[5]}[stage];
+}
+
+export function totalMedians(entry) {
+  return entry.medians?.total?.some(isKnown) ? entry.medians.total : mediansOf(entry, "total_seconds");
+}
+
+export const ORDERS = {name: "order", label: "Which", fallback: () => "score", options: () => [
+  {key: "score", label: "best by CUES"}, {key: "fast", label: "fastest"}, {key: "slow", label: "slowest"}]};
+
+export function inTimeOrder({entry, shown: rows}, order, values) {
+  const known = rows.filter(a => isKnown(values[a]));
+  if (order === "score") return known;
+  return known.sort((a, b) => (order === "fast" ? 1 : -1) * (values[a] - values[b]));
+}
+
+/* Ticks of a logarithmic axis of seconds, as durations. */
+export function secondsAxis(scale, values, title = "time") {
+  if (scale !== "log") return {title: `${title}, s`, rangemode: "tozero"};
+  return {title, ...logAxis(values, duration)};
+}

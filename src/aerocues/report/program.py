@@ -1,0 +1,69 @@
+"""The program of the page: its JavaScript modules, put together into one script."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from graphlib import TopologicalSorter
+from importlib.resources.abc import Traversable
+
+START = "start.js"
+# The one form of import and of export that the modules use.
+IMPORT = re.compile(r'^import \{([^}]+)\} from "([^"]+)";\n', re.MULTILINE)
+EXPORT = re.compile(r"^export (?=(?:async function|function|const) (\w+))", re.MULTILINE)
+
+
+def program_of(folder: Traversable) -> str:
+    """`start.js` and every module that it imports, each in a scope of its own.
+
+    A module becomes a function that is called once and returns what the module exports. Browsers
+    load no modules from a page that is opened as a file, and a bundler would need a build step.
+
+    Parameters
+    ----------
+    folder : Traversable
+        Holds the modules; a module that nothing imports is left out.
+
+    Raises
+    ------
+    graphlib.CycleError
+        Two modules import each other.
+    """
+    sources = _sources(folder)
+    imported = {name: _imports(name, text) for name, text in sources.items()}
+    order = TopologicalSorter(imported).static_order()
+    return "\n".join(_scoped(name, sources[name]) for name in order)
+
+
+def _sources(folder: Traversable) -> dict[str, str]:
+    """Text of each module by its path in the folder."""
+    found: dict[str, str] = {}
+    waiting = [START]
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found[name] = folder.joinpath(*name.split("/")).read_text(encoding="utf-8")
+            waiting += _imports(name, found[name])
+    return found
+
+
+def _imports(name: str, text: str) -> list[str]:
+    return [_resolved(name, path) for _, path in IMPORT.findall(text)]
+
+
+def _resolved(name: str, path: str) -> str:
+    """The path of an imported module, which is relative to the folder of the importing one."""
+    return posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
+
+
+def _scoped(name: str, text: str) -> str:
+    body = IMPORT.sub(
+        lambda found: f"const {{{found[1]}}} = {_variable(_resolved(name, found[2]))};\n", text
+    )
+    exported = ", ".join(EXPORT.findall(text))
+    body = EXPORT.sub("", body)
+    return f"const {_variable(name)} = (() => {{\n{body}return {{{exported}}};\n}})();\n"
+
+
+def _variable(name: str) -> str:
+    return "module_" + re.sub(r"\W", "_", name.removesuffix(".js"))
