@@ -31,7 +31,7 @@ LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -80,11 +80,22 @@ $(LIGHT_INSTALLED): requirements-light.lock $(INSTALLED)
 	$(LIGHT_VENV)/bin/python -m pip install --quiet --no-deps --require-hashes -r requirements-light.lock
 	@touch $@
 
-lint: setup ## style, types and the direction of imports
+lint: setup lint-page ## style, types (of the page's JavaScript, too) and the direction of imports
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# The development install brings Node and npm; TypeScript comes from npm, at the version in package-lock.json.
+lint-page: export PATH := $(CURDIR)/$(BIN):$(PATH)
+lint-page: setup
+	@if [ ! node_modules/.package-lock.json -nt package-lock.json ]; then \
+		npm ci --ignore-scripts --no-audit --no-fund --loglevel=error; \
+	fi; \
+	if [ -f node_modules/typescript/bin/tsc ]; then \
+		echo "tsc: the page's JavaScript"; node node_modules/typescript/bin/tsc -p .; \
+	elif [ -n "$(CI)" ]; then echo "error: no TypeScript to check the page's JavaScript with" >&2; exit 1; \
+	else echo "skipped: the page's JavaScript is not checked, as Node or TypeScript cannot be installed here" >&2; fi
 
 bench: setup ## the benchmarks of the framework itself
 	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
@@ -98,4 +109,4 @@ lock: setup ## pin the newest allowed versions in requirements.lock and requirem
 
 clean: ## remove everything that the other targets made
 	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
-	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache node_modules

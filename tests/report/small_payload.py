@@ -83,7 +83,14 @@ def frame_of(entries: list[dict[str, Any]]) -> dict[str, Any]:
         "pictures": [],
         "clouds": [],
         "method": {
-            "columns": [{"name": "precision", "unit": "ratio", "definition": "inliers / matches"}],
+            "columns": [
+                {
+                    "name": "precision",
+                    "unit": "ratio",
+                    "definition": "inliers / matches",
+                    "better": "higher",
+                }
+            ],
             "criteria": [],
             "statuses": [{"name": "ok", "meaning": "a model was found"}],
             "citation": f"Someone, {HARMFUL}",
@@ -173,6 +180,7 @@ def imported_entry(
             "total": np.median(seconds, axis=1).tolist(),
         },
         "validation": _no_validation(),
+        "models": None,
         "counts": {"ok": int((status == 0).sum()), "error": int((status != 0).sum())},
         "failures": [
             {
@@ -183,7 +191,10 @@ def imported_entry(
                 "message": f"it failed {HARMFUL}",
             }
         ],
-        "excluded": [{"reason": "cannot run & <never> will", "combinations": 3, "pairs": 8}],
+        "failures_left_out": 0,
+        "excluded": [
+            {"reason": "cannot run & <never> will", "combinations": ["a", "b", "c"], "pairs": 8}
+        ],
         "run": {"dataset": {"name": HARMFUL}, "versions": {"aerocues": "0.1.0"}},
     }
 
@@ -231,9 +242,18 @@ def _score(
             "methods": ["entropy", "aggregate"],
             "values": {"entropy": weights, "aggregate": weights},
         },
-        "settings": {"resamples": 1000, "resampled": "repeat", "failures": "worst", "good": 0.9},
+        "settings": {
+            "resamples": 1000,
+            "resampled": "repeat",
+            "failures": "worst",
+            "criteria": list(CRITERIA),
+            "top_k": 5,
+            "good": 0.9,
+        },
         "best": best,
         "indistinguishable": [1, 2] if number > 2 else [],
+        "untested": [],
+        "units": pairs,
         "fastest_good": 1 if number > 1 else None,
         "best_binary": 3 if number > 3 else None,
     }
@@ -269,6 +289,7 @@ def _validation(entry: dict[str, Any]) -> dict[str, Any]:
         "mean": 0.6,
         "max": 0.9,
         "standard_deviation": 0.1,
+        "alternatives": 3,
         "evaluations": 24,
         "best": entry["combinations"][0],
     }
@@ -297,6 +318,8 @@ def _validation(entry: dict[str, Any]) -> dict[str, Any]:
             "units": 8,
             "chi_square": 12.5,
             "p_value": 0.006,
+            "f_statistic": 7.6,
+            "f_p_value": 0.001,
         },
     }
 
@@ -360,5 +383,7 @@ def picture_of(entry: dict[str, Any], combination: int, pair: int) -> dict[str, 
         "inlier": small_bytes(np.arange(20) % 2),
         "matches_every": 2,
         "why": f"worst pair {HARMFUL}",
+        "role": "best",
+        "note": None,
         "figures": {"status": "ok", "precision": 0.5, "inliers": 20, "matches": 40},
     }

@@ -25,7 +25,7 @@ function start() {
   buildMasthead();
   buildSections();
   const toolbar = buildToolbar();
-  const update = changed => {
+  const update = (/** @type {Set<string>} */ changed) => {
     applyTheme();
     updateToolbar(toolbar);
     updateSections(changed);

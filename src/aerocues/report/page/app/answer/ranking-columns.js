@@ -4,15 +4,17 @@ import {make} from "../basis/elements.js";
 import {CODES, definitionOf, measureOf, measuresOf, remember} from "../basis/entries.js";
 import {duration, fixed, isKnown, NONE, percent, sentenceCase, shown, valueText} from "../basis/numbers.js";
 
+/** @param {Entry} entry */
 export function rankingColumns(entry) {
   return remember(entry, "ranking columns", () => [
     ...scoreColumns(entry), ...methodColumns(entry), ...meanColumns(entry), ...timeColumns(entry)]);
 }
 
+/** @param {Entry} entry @returns {Column[]} */
 function scoreColumns(entry) {
   const score = entry.score;
-  const of = (name, text) => ({number: true, value: a => score[name]?.[a] ?? null,
-    text: a => text(score[name]?.[a])});
+  /** @type {(name: ScoreFigure, text: (value: Value) => string) => Pick<Column, "number" | "value" | "text">} */
+  const of = (name, text) => ({number: true, value: a => score[name][a], text: a => text(score[name][a])});
   return [
     {key: "rank", label: "Rank", title: "Place by CUES", usual: true, ...of("rank", shown)},
     {key: "combination", label: "Combination", title: "Detector-descriptor-norm-matcher",
@@ -22,12 +24,12 @@ function scoreColumns(entry) {
     {key: "score_low", label: "CUES, low", title: "Lower end of the 95 % interval", ...of("score_low", fixed)},
     {key: "score_high", label: "CUES, high", title: "Upper end of the 95 % interval", ...of("score_high", fixed)},
     {key: "rank_low", label: "Ranks", usual: true, title: "95 % interval of the rank",
-      number: true, value: a => score.rank_low?.[a] ?? null,
-      text: a => (isKnown(score.rank_low?.[a]) ? `${score.rank_low[a]}–${score.rank_high[a]}` : NONE)},
+      number: true, value: a => score.rank_low[a],
+      text: a => (isKnown(score.rank_low[a]) ? `${score.rank_low[a]}–${score.rank_high[a]}` : NONE)},
     {key: "rank_high", label: "Rank, worst", title: "Upper end of the rank's interval", ...of("rank_high", shown)},
     {key: "probability_best", label: "First in", usual: true,
       title: "Share of the resamples in which it is the best", ...of("probability_best", percent)},
-    {key: "probability_top", label: "In top 5", title: "Share of the resamples in which it is among the best",
+    {key: "probability_top", label: `In top ${score.settings.top_k}`, title: "Share of the resamples in which it is among the best",
       ...of("probability_top", percent)},
     {key: "p_value", label: "p", usual: true, title: "Difference from the best, corrected for all comparisons; "
       + "large: cannot be told from it", ...of("p_value", value => (isKnown(value) && value < 0.001 ? "< 0.001" : shown(value, 2)))},
@@ -37,17 +39,20 @@ function scoreColumns(entry) {
   ];
 }
 
+/** @param {Score} score @param {number} a @param {Span} span */
 function intervalCell(score, a, [from, to]) {
-  const [value, low, high] = [score.score[a], score.score_low?.[a], score.score_high?.[a]];
+  const [value, low, high] = [score.score[a], score.score_low[a], score.score_high[a]];
   if (!isKnown(value)) return NONE;
   const bar = make("span", {class: "interval", "aria-hidden": "true", title: `${fixed(low)} to ${fixed(high)}`});
-  const place = (known, otherwise) => (((isKnown(known) ? known : otherwise) - from) / (to - from)).toFixed(4);
+  /** @type {(end: Value, otherwise: number) => string} */
+  const place = (end, otherwise) => (((isKnown(end) ? end : otherwise) - from) / (to - from)).toFixed(4);
   bar.style.setProperty("--low", place(low, value));
   bar.style.setProperty("--high", place(high, value));
   bar.style.setProperty("--at", place(value, value));
   return make("span", {class: "score"}, fixed(value), bar);
 }
 
+/** @param {Entry} entry @returns {Column[]} */
 function methodColumns(entry) {
   return CODES.map(code => ({key: code, label: sentenceCase(code), title: `The ${code}`,
     value: a => entry[code][a], text: a => entry[code][a]}));
@@ -57,6 +62,7 @@ const USUAL_MEANS = [
   ["precision_beyond_chance", "precision"], ["excess_inliers", "inliers"],
   ["gt_precision@3"], ["homography_auc@3"], ["pose_auc@10"]];
 
+/** @param {Entry} entry @returns {Column[]} */
 function meanColumns(entry) {
   const usual = new Set(USUAL_MEANS.map(names => names.find(name => measureOf(entry, name))));
   return measuresOf(entry)
@@ -68,10 +74,12 @@ function meanColumns(entry) {
     }));
 }
 
+/** @type {[Stage | "total", string][]} */
+const STAGES = [["detect", "Detect"], ["describe", "Describe"], ["match", "Match"], ["verify", "Verify"], ["total", "Total time"]];
+
+/** @param {Entry} entry @returns {Column[]} */
 function timeColumns(entry) {
-  const stages = {detect: "Detect", describe: "Describe", match: "Match", verify: "Verify", total: "Total time"};
-  return Object.entries(stages)
-    .filter(([stage]) => entry.medians?.[stage]?.some(isKnown))
+  return STAGES.filter(([stage]) => entry.medians[stage].some(isKnown))
     .map(([stage, label]) => ({
       key: `median_${stage}`, label, number: true, usual: stage === "total",
       title: stage === "total" ? "Median over the pairs, for an image and a pair" : "Median over the pairs",

@@ -3,6 +3,7 @@
 import {isKnown} from "./numbers.js";
 import {state} from "./state.js";
 
+/** @type {Record<Theme, Colours>} */
 export const THEMES = {
   light: {
     ink: "#1b2430", muted: "#5b6675", grid: "#e4e8ed", line: "#9aa5b1", surface: "#ffffff",
@@ -28,6 +29,7 @@ export const DIVERGING = {
 
 export const darkWanted = window.matchMedia("(prefers-color-scheme: dark)");
 
+/** @returns {Theme} */
 export function themeName() {
   if (document.documentElement.classList.contains("printing")) return "light";
   const chosen = state.get("theme");
@@ -38,7 +40,8 @@ export function applyTheme() {
   document.documentElement.dataset.theme = themeName();
 }
 
-/* The colour at a share from 0 to 1. */
+/** The colour at a share from 0 to 1.
+ * @param {number} share */
 export function onCividis(share) {
   const place = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
   const [low, rest] = [Math.floor(place), place % 1];
@@ -46,30 +49,36 @@ export function onCividis(share) {
   return `rgb(${CIVIDIS[low].map((value, i) => Math.round(value + rest * (CIVIDIS[high][i] - value))).join(" ")})`;
 }
 
-/* Whether a colour is bright enough for black text: on cividis from 0 to 1, on the diverging scale from -1 to 1. */
+/** Whether a colour is bright enough for black text: on cividis from 0 to 1, on the diverging scale from -1 to 1.
+ * @param {number} share */
 export function isBrightOnScale(share) {
   return share > 0.47;
 }
 
+/** @param {Theme} theme @param {number} value */
 export function isBrightOnDiverging(theme, value) {
   return theme === "dark" ? Math.abs(value) > 0.55 : value > -0.7;
 }
 
-/* Numbers in the cells of a heat map: black on bright cells, white on dark ones. `texts` are rows of rows. */
-export function cellTexts({x, y, z, texts, isBright, size, axes = {}}) {
-  const groups = new Map([[true, {x: [], y: [], text: []}], [false, {x: [], y: [], text: []}]]);
+/** Numbers in the cells of a heat map: black on bright cells, white on dark ones. `texts` are rows of rows.
+ * @param {{x: string[], y: string[], z: Matrix, texts: string[][], isBright(value: number): boolean, size: number}} cells
+ * @returns {Trace[]} */
+export function cellTexts({x, y, z, texts, isBright, size}) {
+  const noCells = () => ({x: /** @type {string[]} */ ([]), y: /** @type {string[]} */ ([]), text: /** @type {string[]} */ ([])});
+  const [bright, dark] = [noCells(), noCells()];
   z.forEach((row, i) => row.forEach((value, j) => {
     if (!isKnown(value)) return;
-    const group = groups.get(isBright(value));
+    const group = isBright(value) ? bright : dark;
     group.x.push(x[j]);
     group.y.push(y[i]);
     group.text.push(texts[i][j]);
   }));
-  return [...groups].map(([bright, points]) => ({type: "scatter", mode: "text", name: "not in the table", showlegend: false,
-    ...points, ...axes, hoverinfo: "skip", textfont: {size, color: bright ? "#000000" : "#ffffff"}}));
+  return [bright, dark].map(group => ({type: "scatter", mode: "text", name: "not in the table", showlegend: false,
+    ...group, hoverinfo: "skip", textfont: {size, color: group === bright ? "#000000" : "#ffffff"}}));
 }
 
-/* Colour and symbol of the n-th of a series: 7 colours, then other symbols. */
+/** Colour and symbol of the n-th of a series: 7 colours, then other symbols.
+ * @param {Theme} theme @param {number} position */
 export function seriesStyle(theme, position) {
   const colours = THEMES[theme].series;
   return {

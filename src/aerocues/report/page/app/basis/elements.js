@@ -1,5 +1,16 @@
 /* Elements. Text goes in as text nodes only, so nothing in data can become markup. */
 
+/** The element with an id that the page has from the start.
+ * @param {string} id */
+export function elementOf(id) {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no element ${id}`);
+  return element;
+}
+
+/** An element with attributes, listeners (`onclick`) and children.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag @param {Record<string, any>} [attributes] @param {...Content} children */
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -8,28 +19,40 @@ export function make(tag, attributes = {}, ...children) {
     else if (name === "class") element.className = value;
     else element.setAttribute(name, value === true ? "" : value);
   }
-  element.append(...children.flat(Infinity).filter(child => child !== null && child !== undefined));
+  element.append(...nodesOf(children));
   return element;
 }
 
-/* Text for Plotly, which reads some tags and entities. */
+/** The nodes and texts in nested lists; what is missing is left out.
+ * @param {Content} content @returns {(Node | string)[]} */
+export function nodesOf(content) {
+  if (Array.isArray(content)) return content.flatMap(nodesOf);
+  return content === null || content === undefined ? [] : [content];
+}
+
+/** Text for Plotly, which reads some tags and entities.
+ * @param {string} text */
 export function safe(text) {
   return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 }
 
-/* An SVG element with text and children. */
+/** An SVG element with text and children.
+ * @template {keyof SVGElementTagNameMap} Tag
+ * @param {Tag} tag @param {Record<string, any>} [attributes] @param {...Content} children */
 export function makeSvg(tag, attributes = {}, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children.flat(Infinity));
+  element.append(...nodesOf(children));
   return element;
 }
 
-/* Shows what stands in `data-tip` of the part of a drawing under the pointer. */
+/** Shows what stands in `data-tip` of the part of a drawing under the pointer.
+ * @param {SVGSVGElement} svg */
 export function withTips(svg) {
-  const tip = document.getElementById("tip");
+  const tip = elementOf("tip");
+  /** @param {PointerEvent} event */
   const show = event => {
-    const text = event.target.dataset?.tip;
+    const text = event.target instanceof SVGElement ? event.target.dataset.tip : "";
     tip.hidden = !text;
     if (!text) return;
     tip.textContent = text;
@@ -43,13 +66,16 @@ export function withTips(svg) {
   return svg;
 }
 
+/** @param {string} text */
 export function announce(text) {
-  document.getElementById("announcer").textContent = text;
+  elementOf("announcer").textContent = text;
 }
 
-/* A table of plain rows. A column: {label, text(row), number: bool, title}. */
+/** A table of plain rows.
+ * @template Row
+ * @param {string} caption @param {PlainColumn<Row>[]} columns @param {Row[]} rows */
 export function plainTable(caption, columns, rows) {
-  const kind = column => (column.number ? "number" : null);
+  const kind = (/** @type {PlainColumn<Row>} */ column) => (column.number ? "number" : null);
   return make("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": caption},
     make("table", {class: "plain"},
       make("caption", {}, caption),
@@ -63,11 +89,14 @@ export function plainTable(caption, columns, rows) {
       }))))));
 }
 
+/** @param {string} summary @param {...Content} content */
 export function disclosure(summary, ...content) {
   return make("details", {class: "disclosure"}, make("summary", {}, summary), ...content);
 }
 
+/** A list of terms and what is said of them; missing ones are left out.
+ * @param {([string, Content] | null)[]} pairs */
 export function figuresList(pairs) {
-  return make("dl", {}, pairs.filter(Boolean).map(([term, value]) =>
-    make("div", {}, make("dt", {}, term), make("dd", {}, value))));
+  return make("dl", {}, pairs.map(pair =>
+    pair && make("div", {}, make("dt", {}, pair[0]), make("dd", {}, pair[1]))));
 }

@@ -5,38 +5,43 @@ import {arrayOf, payload} from "./payload.js";
 import {meanOf, medianOf} from "./statistics.js";
 
 export const entries = payload.entries;
+/** @type {Code[]} */
 export const CODES = ["detector", "descriptor", "norm", "matcher"];
+/** @type {WeakMap<Entry, Map<string, any>>} */
 const remembered = new WeakMap();
 
-/* The result of `compute`, computed once for each entry and key. */
+/** The result of `compute`, computed once for each entry and key.
+ * @template T
+ * @param {Entry} entry @param {string} key @param {() => T} compute @returns {T} */
 export function remember(entry, key, compute) {
-  if (!remembered.has(entry)) remembered.set(entry, new Map());
-  const known = remembered.get(entry);
+  const known = remembered.get(entry) ?? new Map();
+  remembered.set(entry, known);
   if (!known.has(key)) known.set(key, compute());
   return known.get(key);
 }
 
+/** @param {Entry} entry @param {string} name */
 export function hasColumn(entry, name) {
   return Object.hasOwn(entry.columns, name);
 }
 
-/* Values of one combination over the pairs; NaN where there is none. */
+/** Values of one combination over the pairs; NaN where there is none.
+ * @param {Entry} entry @param {string} name @param {number} a */
 export function pairValues(entry, name, a) {
   const count = entry.pairs.length;
   return arrayOf(entry.columns[name].values).subarray(a * count, (a + 1) * count);
 }
 
-/* The mean over pairs of each combination: the score's own, where it has the criterion. */
+/** The mean over pairs of each combination: the score's own, where it has the criterion.
+ * @param {Entry} entry @param {string} name @returns {Value[]} */
 export function meansOf(entry, name) {
-  return remember(entry, `means ${name}`, () => {
-    const scored = entry.score.means[name];
-    if (scored) return scored.map(value => (Number.isFinite(value) ? value : null));
-    return entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a)));
-  });
+  return remember(entry, `means ${name}`, () =>
+    entry.score.means[name] ?? entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a))));
 }
 
-/* The same with failed pairs as 0, for what is better when higher: to compare with the truth, a
-   combination must not gain by failing on the hard pairs. */
+/** The same with failed pairs as 0, for what is better when higher: to compare with the truth, a
+ * combination must not gain by failing on the hard pairs.
+ * @param {Entry} entry @param {string} name @returns {Value[]} */
 export function meansWithFailures(entry, name) {
   return remember(entry, `means with failures ${name}`, () => {
     if (entry.columns[name].better !== "higher") return meansOf(entry, name);
@@ -49,37 +54,44 @@ export function meansWithFailures(entry, name) {
   });
 }
 
+/** @param {Entry} entry @param {string} name */
 export function mediansOf(entry, name) {
   return remember(entry, `medians ${name}`, () =>
     entry.combinations.map((_, a) => medianOf(pairValues(entry, name, a))));
 }
 
-/* Positions of all combinations, the best first, those without a rank last. */
+/** Positions of all combinations, the best first, those without a rank last.
+ * @param {Entry} entry */
 export function ranked(entry) {
   return remember(entry, "ranked", () => {
-    const rank = a => entry.score.rank[a] ?? Infinity;
+    const rank = (/** @type {number} */ a) => entry.score.rank[a] ?? Infinity;
     return entry.combinations.map((_, a) => a).sort((a, b) => (rank(a) - rank(b)) || (a - b));
   });
 }
 
+/** @param {Entry} entry @param {number} a */
 export function isBinary(entry, a) {
   return entry.norm[a].toUpperCase().startsWith("HAM");
 }
 
+/** @param {Entry} entry @param {string} name */
 function criterionOf(entry, name) {
   return entry.score.criteria.find(each => each.name === name);
 }
 
+/** @param {Entry} entry @param {string} name */
 export function definitionOf(entry, name) {
-  const listed = payload.method?.columns?.find(each => each.name === name);
+  const listed = payload.method.columns.find(each => each.name === name);
   return entry.columns[name]?.definition || criterionOf(entry, name)?.description
     || listed?.definition || "";
 }
 
-/* What can be put on an axis: one value a combination. */
+/** What can be put on an axis: one value a combination.
+ * @param {Entry} entry */
 export function measuresOf(entry) {
   return remember(entry, "measures", () => {
     const score = entry.score;
+    /** @type {Measure[]} */
     const measures = [
       {key: "score", label: "CUES", better: "higher", values: score.score},
       {key: "success_rate", label: "success rate", better: "higher", values: score.success_rate},
@@ -96,32 +108,45 @@ export function measuresOf(entry) {
   });
 }
 
+/** @param {Entry} entry @param {string} key */
 export function measureOf(entry, key) {
   return measuresOf(entry).find(measure => measure.key === key) ?? null;
 }
 
-/* The first of some columns that the entry has. */
+/** The measure that a control offered.
+ * @param {Entry} entry @param {string} key */
+export function measureNamed(entry, key) {
+  const found = measureOf(entry, key);
+  if (!found) throw new Error(`${entry.name} has no measure ${key}`);
+  return found;
+}
+
+/** The first of some columns that the entry has.
+ * @param {Entry} entry @param {string[]} names */
 export function firstColumn(entry, names) {
   return names.find(name => hasColumn(entry, name)) ?? null;
 }
 
+/** @param {Entry} entry @param {number} position */
 export function pairLabel(entry, position) {
   const {sequence, image_1: first, image_2: second} = entry.pairs[position];
-  const leaf = name => String(name).split("/").pop();
+  const leaf = (/** @type {string} */ name) => name.split("/").pop();
   return `${sequence ? `${sequence}: ` : ""}${leaf(first)} – ${leaf(second)}`;
 }
 
+/** @param {Entry} entry */
 export function pairCount(entry) {
   return counted(entry.pairs.length, "pair");
 }
 
+/** @param {Score} score @param {number} a */
 export function rankText(score, a) {
   if (!isKnown(score.rank[a])) return NONE;
-  const low = score.rank_low?.[a];
-  const high = score.rank_high?.[a];
+  const [low, high] = [score.rank_low[a], score.rank_high[a]];
   return isKnown(low) && low !== high ? `${score.rank[a]} (${low} to ${high})` : String(score.rank[a]);
 }
 
+/** @param {Entry} entry @param {number[]} positions */
 export function withRank(entry, positions) {
   return positions.filter(a => isKnown(entry.score.rank[a]));
 }

@@ -8,7 +8,9 @@ import {state} from "./state.js";
 const knownParts = new Set(entries.flatMap(entry =>
   CODES.flatMap(code => entry[code].map(part => part.toLowerCase()))));
 
+/** @param {string} text */
 function parseFilter(text) {
+  /** @type {Record<string, string[]>} */
   const words = {and: [], or: [], not: []};
   let mode = "and";
   for (const token of text.toLowerCase().split(/[\s,]+/).filter(Boolean)) {
@@ -16,16 +18,16 @@ function parseFilter(text) {
     else if (token.startsWith("-")) words.not.push(token.slice(1));
     else words[mode].push(token);
   }
-  for (const mode of Object.keys(words)) {
-    words[mode] = words[mode].map(partsOfWord).filter(parts => parts.length);
-  }
-  return words;
+  const [and, or, not] = [words.and, words.or, words.not].map(each => each.map(partsOfWord).filter(parts => parts.length));
+  return {and, or, not};
 }
 
+/** @param {string} word */
 function partsOfWord(word) {
   return word.split("-").filter(Boolean);
 }
 
+/** @param {string[]} word @param {string[]} parts */
 function wordMatches(word, parts) {
   const last = word.length - 1;
   const exact = knownParts.has(word[last]);
@@ -38,17 +40,20 @@ function wordMatches(word, parts) {
   return false;
 }
 
+/** @param {Entry} entry */
 function partsOfNames(entry) {
   return remember(entry, "parts", () => entry.combinations.map((_, a) =>
     CODES.map(code => entry[code][a].toLowerCase())));
 }
 
+/** @param {Code} code */
 export function chosenChips(code) {
   return new Set(state.get(code).split(",").filter(Boolean));
 }
 
-/* The filter as it stands: whether a combination passes the words and the chips, by its four names
-   and, where they are at hand, the same in lower case. */
+/** The filter as it stands: whether a combination passes the words and the chips, by its four names
+ * and, where they are at hand, the same in lower case.
+ * @returns {(names: string[], parts?: string[]) => boolean} */
 export function currentFilter() {
   const words = parseFilter(state.get("q"));
   const chips = CODES.map(chosenChips);
@@ -59,6 +64,7 @@ export function currentFilter() {
     && !words.not.some(word => wordMatches(word, parts));
 }
 
+/** @param {Entry} entry */
 function passing(entry) {
   const passes = currentFilter();
   return partsOfNames(entry).map((parts, a) => passes(CODES.map(code => entry[code][a]), parts));
@@ -74,18 +80,20 @@ export function unknownWords() {
 }
 
 export function isFiltered() {
-  return Boolean(state.get("q").trim()) || CODES.some(code => chosenChips(code).size);
+  return Boolean(state.get("q").trim()) || CODES.some(code => chosenChips(code).size > 0);
 }
 
-const filtered = {key: null, entries: new Map()};
+const filtered = {key: "", entries: /** @type {Map<Entry, number[]>} */ (new Map())};
 
-/* Positions of the combinations that pass, the best first. */
+/** Positions of the combinations that pass, the best first.
+ * @param {Entry} entry */
 export function shownIn(entry) {
   const key = JSON.stringify(["q", ...CODES].map(name => state.get(name)));
   if (filtered.key !== key) Object.assign(filtered, {key, entries: new Map()});
-  if (!filtered.entries.has(entry)) {
-    const pass = passing(entry);
-    filtered.entries.set(entry, ranked(entry).filter(a => pass[a]));
-  }
-  return filtered.entries.get(entry);
+  const known = filtered.entries.get(entry);
+  if (known) return known;
+  const pass = passing(entry);
+  const found = ranked(entry).filter(a => pass[a]);
+  filtered.entries.set(entry, found);
+  return found;
 }

@@ -2,11 +2,13 @@
 
 export const NONE = "–";
 
+/** @param {unknown} value @returns {value is number} */
 export function isKnown(value) {
-  return value !== null && value !== undefined && Number.isFinite(value);
+  return Number.isFinite(value);
 }
 
-/* Three significant digits; whole numbers from 100 on, with thousands apart. */
+/** Three significant digits; whole numbers from 100 on, with thousands apart.
+ * @param {Value} value @param {number} [digits] */
 export function shown(value, digits = 3) {
   if (!isKnown(value)) return NONE;
   const size = Math.abs(value);
@@ -15,11 +17,13 @@ export function shown(value, digits = 3) {
   return String(Number(value.toPrecision(digits)));
 }
 
-/* A score, with the same number of decimals everywhere. */
+/** A score, with the same number of decimals everywhere.
+ * @param {Value} value @param {number} [decimals] */
 export function fixed(value, decimals = 3) {
   return isKnown(value) ? value.toFixed(decimals) : NONE;
 }
 
+/** @param {Value} value */
 export function percent(value) {
   if (!isKnown(value)) return NONE;
   if (value > 0 && value < 0.01) return "< 1\u00a0%";
@@ -27,6 +31,7 @@ export function percent(value) {
   return `${Math.round(100 * value)}\u00a0%`;
 }
 
+/** @param {Value} seconds */
 export function duration(seconds) {
   if (!isKnown(seconds)) return NONE;
   if (seconds < 1e-3) return `${shown(1e6 * seconds, 2)} µs`;
@@ -34,15 +39,18 @@ export function duration(seconds) {
   return seconds < 120 ? `${shown(seconds)} s` : `${shown(seconds / 60)} min`;
 }
 
+/** @param {number} number @param {string} noun @param {string} [plural] */
 export function counted(number, noun, plural = `${noun}s`) {
   return `${number.toLocaleString("en")} ${number === 1 ? noun : plural}`;
 }
 
+/** @param {string[]} words @param {string} [last] */
 export function listed(words, last = "and") {
   if (words.length < 2) return words.join("");
   return `${words.slice(0, -1).join(", ")} ${last} ${words[words.length - 1]}`;
 }
 
+/** @type {Record<string, string>} */
 const LABELS = {
   score: "CUES", f1_score: "F1 score", points_3d: "3D points",
   f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "time of detecting",
@@ -53,7 +61,8 @@ const LABELS = {
   reference_distance_p95: "C2C back, 95th percentile", reconstruction_seconds: "time of reconstruction",
 };
 
-/* A column's name in words: `gt_precision@3` as "true precision at 3 px". */
+/** A column's name in words: `gt_precision@3` as "true precision at 3 px".
+ * @param {string} name */
 export function labelOf(name) {
   if (Object.hasOwn(LABELS, name)) return LABELS[name];
   const [stem, threshold] = name.split("@");
@@ -62,20 +71,24 @@ export function labelOf(name) {
   return `${words} at ${threshold}${stem.startsWith("pose") ? "°" : " px"}`;
 }
 
-/* Seconds as durations, shares with three decimals, counts as numbers. */
+/** Seconds as durations, shares with three decimals, counts as numbers.
+ * @param {string} name @param {Value} value */
 export function valueText(name, value) {
   if (/seconds/.test(name)) return duration(value);
   return isShare(name) ? fixed(value) : shown(value);
 }
 
+/** @param {string} name */
 export function isShare(name) {
   return /precision|recall|repeatability|^f1_|_auc@|matching_score|^score$|success_rate/.test(name);
 }
 
+/** @param {string} name */
 export function isGroundTruth(name) {
   return /^gt_|_auc@|^homography_error$|^pose_/.test(name);
 }
 
+/** @param {string} text */
 export function sentenceCase(text) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

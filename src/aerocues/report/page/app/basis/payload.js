@@ -1,10 +1,13 @@
 /* The payload: everything that was measured. Arrays are decoded when first asked for. */
 
-export const payload = JSON.parse(document.getElementById("payload").textContent);
+/** @type {Payload} */
+export const payload = JSON.parse(document.getElementById("payload")?.textContent ?? "");
 
+/** @type {WeakMap<Packed, Numbers>} */
 const decodedArrays = new WeakMap();
 const NO_VALUE = 65535;
 
+/** @param {string} base64 */
 export function bytesOf(base64) {
   const characters = atob(base64);
   const bytes = new Uint8Array(characters.length);
@@ -12,16 +15,20 @@ export function bytesOf(base64) {
   return bytes;
 }
 
-/* {"f32": ...}, {"u8": ...} or {"u16": ..., low, high} as a typed array; an empty one for nothing. */
+/** {"f32": ...}, {"u8": ...} or {"u16": ..., low, high} as a typed array; an empty one for nothing.
+ * @param {Packed | null | undefined} packed @returns {Numbers} */
 export function arrayOf(packed) {
   if (!packed) return new Float32Array(0);
-  if (!decodedArrays.has(packed)) decodedArrays.set(packed, decoded(packed));
-  return decodedArrays.get(packed);
+  const known = decodedArrays.get(packed) ?? decoded(packed);
+  decodedArrays.set(packed, known);
+  return known;
 }
 
-function decoded({f32, u8, u16, low, high}) {
-  if (u8 !== undefined) return bytesOf(u8);
-  if (f32 !== undefined) return new Float32Array(bytesOf(f32).buffer);
+/** @param {Packed} packed @returns {Numbers} */
+function decoded(packed) {
+  if ("u8" in packed) return bytesOf(packed.u8);
+  if ("f32" in packed) return new Float32Array(bytesOf(packed.f32).buffer);
+  const {u16, low, high} = packed;
   return Float32Array.from(new Uint16Array(bytesOf(u16).buffer),
     code => (code === NO_VALUE ? NaN : low + (code / (NO_VALUE - 1)) * (high - low)));
 }

@@ -3,15 +3,20 @@
 import {entries} from "./entries.js";
 
 export const state = {
+  /** @type {Map<string, string>} */
   values: new Map(),
+  /** @type {((changed: Set<string>) => void)[]} */
   listeners: [],
 
+  /** @param {string} key @param {string} [fallback] */
   get(key, fallback = "") {
     return this.values.get(key) ?? fallback;
   },
 
-  /* Sets keys to texts; null or "" brings back the default. */
+  /** Sets keys to texts; null or "" brings back the default.
+   * @param {Record<string, string | null>} changes */
   set(changes) {
+    /** @type {Set<string>} */
     const changed = new Set();
     for (const [key, value] of Object.entries(changes)) {
       if ((this.values.get(key) ?? "") === (value ?? "")) continue;
@@ -24,10 +29,12 @@ export const state = {
     this.tell(changed);
   },
 
+  /** @param {Set<string>} changed */
   tell(changed) {
     for (const listener of this.listeners) listener(changed);
   },
 
+  /** @param {(changed: Set<string>) => void} listener */
   onChange(listener) {
     this.listeners.push(listener);
   },
@@ -37,7 +44,8 @@ export const state = {
     history.replaceState(null, "", fragment ? `#${fragment}` : location.pathname + location.search);
   },
 
-  /* Reads the fragment; `#quality` alone is a link to a section. Gives what changed. */
+  /** Reads the fragment; `#quality` alone is a link to a section. Gives what changed.
+   * @returns {Set<string>} */
   read() {
     const fragment = location.hash.slice(1);
     const before = this.values;

@@ -1,10 +1,11 @@
 /* Section 8: how all this was measured, what failed, what the words mean, how to cite it. */
 
-import {disclosure, make, plainTable} from "../basis/elements.js";
+import {disclosure, elementOf, make, nodesOf, plainTable} from "../basis/elements.js";
 import {counted, labelOf, NONE, percent, shown} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry} from "../basis/state.js";
 
+/** @type {SectionSpec} */
 export const METHOD_SECTION = {
   id: "method",
   title: "Method",
@@ -12,48 +13,53 @@ export const METHOD_SECTION = {
   build(body) {
     body.append(make("div", {id: "method-entry"}), make("div", {id: "method-words"}, ...methodWords()));
   },
-  update(body, changed) {
-    if (changed.has("entry")) body.querySelector("#method-entry").replaceChildren(...methodOfEntry(currentEntry()).filter(Boolean));
+  update(_, changed) {
+    if (changed.has("entry")) elementOf("method-entry").replaceChildren(...methodOfEntry(currentEntry()));
   },
 };
 
+/** @param {Entry} entry */
 function methodOfEntry(entry) {
-  const parts = entry.run ?? {};
-  return [
+  const parts = entry.run;
+  return nodesOf([
     make("div", {class: "columns"},
-      block("Measured", {"data set": parts.dataset, machine: parts.machine ?? entry.machine, times: entry.timing,
+      block("Measured", {dataset: parts.dataset, machine: parts.machine ?? entry.machine, times: entry.timing,
         imported: parts.imported}),
-      block("Settings", {preset: parts.preset, protocol: parts.protocol, ...parts.settings}),
-      block("Scored", {preset: entry.preset, ...entry.score.settings, criteria: (entry.score.settings?.criteria ?? []).map(labelOf)}),
-      block("Versions", parts.versions)),
-    outcomes(entry), failures(entry), excluded(entry)];
+      block("Settings", {preset: parts.preset, protocol: parts.protocol}),
+      block("Scored", {preset: entry.preset, ...entry.score.settings, criteria: entry.score.settings.criteria.map(labelOf)}),
+      block("Versions", {...(/** @type {Record<string, Json>} */ (parts.versions))})),
+    outcomes(entry), failures(entry), excluded(entry)]);
 }
 
-/* Nested values as nested lists of terms; null for nothing. */
+/** Nested values as nested lists of terms; null for nothing.
+ * @param {string} title @param {{[name: string]: Json | undefined}} values */
 function block(title, values) {
-  const known = Object.entries(values ?? {}).filter(([, value]) => !isNothing(value));
+  const known = Object.entries(values).filter(([, value]) => !isNothing(value));
   if (!known.length) return null;
   return make("div", {class: "block"}, make("h3", {}, title), nested(Object.fromEntries(known)));
 }
 
+/** @param {Json | undefined} value */
 function isNothing(value) {
   return value === null || value === undefined || value === ""
     || (typeof value === "object" && !Object.keys(value).length);
 }
 
+/** @param {Json | undefined} value @returns {Content} */
 function nested(value) {
   if (Array.isArray(value)) {
     return value.every(each => typeof each !== "object") ? value.join(", ") : make("ul", {}, value.map(each => make("li", {}, nested(each))));
   }
   if (value && typeof value === "object") {
     return make("dl", {class: "nested"}, Object.entries(value).filter(([, each]) => !isNothing(each)).map(([name, each]) =>
-      make("div", {}, make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, name === "memory_bytes" ? `${shown(each / 1e9)} GB` : nested(each)))));
+      make("div", {}, make("dt", {}, name.replaceAll("_", " ")), make("dd", {}, name === "memory_bytes" ? `${shown(Number(each) / 1e9)} GB` : nested(each)))));
   }
   return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
 }
 
+/** @param {Entry} entry */
 function outcomes(entry) {
-  const rows = Object.entries(entry.counts ?? {}).sort((a, b) => b[1] - a[1]);
+  const rows = Object.entries(entry.counts).sort((a, b) => b[1] - a[1]);
   const total = rows.reduce((sum, [, count]) => sum + count, 0);
   return plainTable("How the measurements ended", [
     {label: "Status", text: ([status]) => status},
@@ -62,12 +68,14 @@ function outcomes(entry) {
     {label: "Share", number: true, text: ([, count]) => percent(count / total)}], rows);
 }
 
+/** @param {string} status */
 function meaningOf(status) {
-  return (payload.method?.statuses ?? []).find(each => each.name === status)?.meaning ?? "";
+  return payload.method.statuses.find(each => each.name === status)?.meaning ?? "";
 }
 
+/** @param {Entry} entry */
 function failures(entry) {
-  if (!entry.failures?.length) return make("p", {class: "nothing"}, "Nothing failed.");
+  if (!entry.failures.length) return make("p", {class: "nothing"}, "Nothing failed.");
   const left = entry.failures_left_out ? `; ${entry.failures_left_out} more kinds are not listed` : "";
   return disclosure(`Failures by reason (${entry.failures.length}${left})`, plainTable("Failures by reason", [
     {label: "Status", text: row => row.status}, {label: "Detector", text: row => row.detector},
@@ -75,19 +83,16 @@ function failures(entry) {
     {label: "Message", text: row => row.message ?? NONE}], entry.failures));
 }
 
+/** @param {Entry} entry */
 function excluded(entry) {
-  if (!entry.excluded?.length) return null;
+  if (!entry.excluded.length) return null;
   return disclosure(`Never run (${counted(entry.excluded.length, "reason")})`, plainTable("Never run, by reason", [
-    {label: "Reason", text: row => row.reason}, {label: "Combinations", number: true, text: row => countOf(row.combinations)},
-    {label: "Pairs", number: true, text: row => countOf(row.pairs)}], entry.excluded));
-}
-
-function countOf(value) {
-  return Array.isArray(value) ? value.length.toLocaleString("en") : shown(value);
+    {label: "Reason", text: row => row.reason}, {label: "Combinations", number: true, text: row => row.combinations.length.toLocaleString("en")},
+    {label: "Pairs", number: true, text: row => shown(row.pairs)}], entry.excluded));
 }
 
 function methodWords() {
-  const {columns = [], notes = [], citation} = payload.method ?? {};
+  const {columns, notes, citation} = payload.method;
   return [
     notes.length ? make("div", {class: "block"}, make("h3", {}, "Notes"), make("ul", {}, notes.map(note => make("li", {}, note)))) : null,
     columns.length ? disclosure(`Every column (${columns.length})`, plainTable("Definitions of the columns", [

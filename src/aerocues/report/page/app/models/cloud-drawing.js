@@ -6,29 +6,32 @@ import {arrayOf} from "../basis/payload.js";
 import {EYE, projection, unitOf} from "./cloud-space.js";
 import {FONT} from "../shell/figure.js";
 
-const BUFFERS = {};
+/** @typedef {{width: number, height: number, image: ImageData, pixels: Uint32Array, depth: Float32Array}} Buffers */
+/** @type {Buffers | null} */
+let buffers = null;
 
-/* Memory for the pixels of a canvas, shared by all, as they are drawn one after the other. */
+/** Memory for the pixels of a canvas, shared by all, as they are drawn one after the other.
+ * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
 function buffersFor(pen, width, height) {
-  if (BUFFERS.width !== width || BUFFERS.height !== height) {
+  if (buffers?.width !== width || buffers.height !== height) {
     const image = pen.createImageData(width, height);
-    Object.assign(BUFFERS, {width, height, image, pixels: new Uint32Array(image.data.buffer), depth: new Float32Array(width * height)});
+    buffers = {width, height, image, pixels: new Uint32Array(image.data.buffer), depth: new Float32Array(width * height)};
   }
-  return BUFFERS;
+  return buffers;
 }
 
-/* A view is {cloud, pixels, turn, stage, cameras, truth, colours, ground}; sizes in pixels of the canvas. */
+/** @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {number} width @param {number} height @param {number} density */
 export function drawCloud(pen, view, width, height, density) {
   const project = projection(view.turn, view.stage, width, height);
   drawPoints(pen, view, project, width, height, density);
-  const {centres, rotations, positions} = Object.fromEntries(
-    ["centres", "rotations", "positions"].map(name => [name, arrayOf(view.cloud[name])]));
+  const [centres, rotations, positions] = [view.cloud.centres, view.cloud.rotations, view.cloud.positions].map(arrayOf);
   pen.lineWidth = density;
   if (view.truth) drawTruth(pen, view, project, centres, positions, density);
   if (view.cameras) drawCameras(pen, view, project, centres, rotations);
   drawMeasure(pen, view, width, height, density);
 }
 
+/** @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {number} width @param {number} height @param {number} density */
 function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project, width, height, density) {
   const {image, pixels, depth} = buffersFor(pen, width, height);
   pixels.fill(ground);
@@ -55,7 +58,8 @@ function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project,
 
 const CORNERS = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
 
-/* Small pyramids that open in the direction of the view. */
+/** Small pyramids that open in the direction of the view.
+ * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {Numbers} centres @param {Numbers} rotations */
 function drawCameras(pen, {cloud, stage, colours}, project, centres, rotations) {
   const [focal, wide, tall] = cloud.view;
   const count = centres.length / 3;
@@ -64,23 +68,24 @@ function drawCameras(pen, {cloud, stage, colours}, project, centres, rotations) 
   pen.strokeStyle = colours.series[3];
   pen.beginPath();
   for (let c = 0; c < count; c += 1) {
-    const apex = [...centres.subarray(3 * c, 3 * c + 3)];
+    const apex = placeAt(centres, c);
     const turned = rotations.subarray(9 * c, 9 * c + 9);
-    const base = corners.map(corner => [0, 1, 2].map(row => apex[row]
-      + turned[3 * row] * corner[0] + turned[3 * row + 1] * corner[1] + turned[3 * row + 2] * corner[2]));
+    const base = corners.map(corner => /** @type {Place} */ ([0, 1, 2].map(row => apex[row]
+      + turned[3 * row] * corner[0] + turned[3 * row + 1] * corner[1] + turned[3 * row + 2] * corner[2])));
     traceLine(pen, project, [...base, base[0]]);
     for (const corner of base) traceLine(pen, project, [apex, corner]);
   }
   pen.stroke();
 }
 
-/* Rings where the cameras truly were, and lines to them from where the model has them. */
+/** Rings where the cameras truly were, and lines to them from where the model has them.
+ * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {Numbers} centres @param {Numbers} positions @param {number} density */
 function drawTruth(pen, {colours}, project, centres, positions, density) {
   const spot = [0, 0, 0];
   pen.strokeStyle = colours.series[0];
   pen.beginPath();
   for (let c = 0; c < positions.length / 3; c += 1) {
-    const [model, truth] = [centres, positions].map(all => [...all.subarray(3 * c, 3 * c + 3)]);
+    const [model, truth] = [placeAt(centres, c), placeAt(positions, c)];
     if (!truth.every(Number.isFinite) || !project(...truth, spot)) continue;
     pen.moveTo(spot[0] + 3 * density, spot[1]);
     pen.arc(spot[0], spot[1], 3 * density, 0, 2 * Math.PI);
@@ -89,15 +94,21 @@ function drawTruth(pen, {colours}, project, centres, positions, density) {
   pen.stroke();
 }
 
+/** @param {CanvasRenderingContext2D} pen @param {Projection} project @param {Place[]} places */
 function traceLine(pen, project, places) {
   const spot = [0, 0, 0];
-  const spots = places.map(place => (project(...place, spot) ? [spot[0], spot[1]] : null));
-  if (spots.includes(null)) return;
-  pen.moveTo(...spots[0]);
-  for (const next of spots.slice(1)) pen.lineTo(...next);
+  const spots = places.flatMap(place => (project(...place, spot) ? [[spot[0], spot[1]]] : []));
+  if (spots.length < places.length) return;
+  spots.forEach(([x, y], i) => (i ? pen.lineTo(x, y) : pen.moveTo(x, y)));
 }
 
-/* How long a stretch is at the centre, and where east, north and up are. */
+/** @param {Numbers} all @param {number} i @returns {Place} */
+function placeAt(all, i) {
+  return [all[3 * i], all[3 * i + 1], all[3 * i + 2]];
+}
+
+/** How long a stretch is at the centre, and where east, north and up are.
+ * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {number} width @param {number} height @param {number} density */
 function drawMeasure(pen, {cloud, stage, turn, colours}, width, height, density) {
   const project = projection(turn, stage, width, height);
   const [from, to] = [[0, 0, 0], [0, 0, 0]];
@@ -119,25 +130,30 @@ function drawMeasure(pen, {cloud, stage, turn, colours}, width, height, density)
   if (cloud.unit === "m") drawAxes(pen, turn, width, height, density);
 }
 
-/* 1, 2 or 5 times a power of ten, no longer than this. */
+/** 1, 2 or 5 times a power of ten, no longer than this.
+ * @param {number} most */
 function roundLength(most) {
   const power = 10 ** Math.floor(Math.log10(most));
-  return power * [5, 2, 1].find(step => step * power <= most);
+  return power * ([5, 2].find(step => step * power <= most) ?? 1);
 }
 
+/** @type {[name: string, east: number, north: number, up: number][]} */
+const AXES = [["E", 1, 0, 0], ["N", 0, 1, 0], ["up", 0, 0, 1]];
+
+/** @param {CanvasRenderingContext2D} pen @param {Turn} turn @param {number} width @param {number} height @param {number} density */
 function drawAxes(pen, turn, width, height, density) {
   const project = projection({...turn, zoom: 1}, {centre: [0, 0, 0], radius: 1}, 100, 100);
   const [x, y, reach] = [width - 34 * density, height - 30 * density, 0.62 * density];
   const spot = [0, 0, 0];
   Object.assign(pen, {textAlign: "center"});
-  [["E", 1, 0, 0], ["N", 0, 1, 0], ["up", 0, 0, 1]].forEach(([name, ...end]) => {
-    project(...end.map(value => value * 0.7), spot);
+  for (const [name, east, north, up] of AXES) {
+    project(0.7 * east, 0.7 * north, 0.7 * up, spot);
     const [dx, dy] = [(spot[0] - 50) * reach, (spot[1] - 50) * reach];
-    if (Math.hypot(dx, dy) < 6 * density) return;
+    if (Math.hypot(dx, dy) < 6 * density) continue;
     pen.beginPath();
     pen.moveTo(x, y);
     pen.lineTo(x + dx, y + dy);
     pen.stroke();
     pen.fillText(name, x + dx * 1.45, y + dy * 1.45 + 4 * density);
-  });
+  }
 }

@@ -1,20 +1,20 @@
-/* Clouds in space: where the points stand, how they are seen, and what colours they have.
-
-   A turn is {yaw, pitch, zoom}: degrees about the vertical and above the horizon. A stage is {centre, radius}:
-   the ball that is in view at zoom 1. */
+/* Clouds in space: where the points stand, how they are seen, and what colours they have. */
 
 import {onCividis, THEMES} from "../basis/colours.js";
 import {arrayOf} from "../basis/payload.js";
 import {clamped, quantile} from "../basis/statistics.js";
 
+/** @type {Turn} */
 export const FRONT = {yaw: -35, pitch: 38, zoom: 1};
-export const EYE = 3.2;
+export const EYE = 3.2; // of the eye from the centre, in radii
 
+/** @param {ArrayLike<number>} values */
 export function sortedKnown(values) {
   return Float32Array.from(values).filter(Number.isFinite).sort();
 }
 
-/* The stage of some clouds in one frame, without what lies far off. */
+/** The stage of some clouds in one frame, without what lies far off.
+ * @param {Cloud[]} clouds @returns {Stage3D} */
 export function stageOf(clouds) {
   const places = clouds.flatMap(cloud => [cloud.points, cloud.centres, cloud.positions].map(arrayOf));
   const bounds = [0, 1, 2].map(axis => {
@@ -22,12 +22,13 @@ export function stageOf(clouds) {
     return along.length ? [quantile(along, 0.01), quantile(along, 0.99)] : [0, 0];
   });
   return {
-    centre: bounds.map(([low, high]) => (low + high) / 2),
+    centre: /** @type {Place} */ (bounds.map(([low, high]) => (low + high) / 2)),
     radius: Math.hypot(...bounds.map(([low, high]) => (high - low) / 2)) || 1,
   };
 }
 
-/* A function from a place in space to x, y and distance from the eye on a canvas of some size. */
+/** A function from a place in space to x, y and distance from the eye on a canvas of some size.
+ * @param {Turn} turn @param {Stage3D} stage @param {number} width @param {number} height @returns {Projection} */
 export function projection({yaw, pitch, zoom}, {centre, radius}, width, height) {
   const [a, b] = [yaw, pitch].map(degrees => degrees * Math.PI / 180);
   const [ca, sa, cb, sb] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b)];
@@ -46,21 +47,23 @@ export function projection({yaw, pitch, zoom}, {centre, radius}, width, height) 
   };
 }
 
-/* What points can be coloured by: {key, label, unit(cloud), values(cloud), limits}: shares of the sorted
-   values at which the colours end, so that a few outliers do not take them all. */
+/** The first has no values: its colours are in the cloud.
+ * @type {PointColour[]} */
 export const POINT_COLOURS = [
-  {key: "image", label: "colours of the images"},
+  {key: "image", label: "colours of the images", unit: () => "", values: () => new Float32Array(0), limits: [0, 1]},
   {key: "height", label: "height", unit: unitOf, values: cloud => arrayOf(cloud.points).filter((_, i) => i % 3 === 2), limits: [0.02, 0.98]},
   {key: "distance", label: "distance to the reference (C2C)", unit: unitOf, values: cloud => arrayOf(cloud.distances), limits: [null, 0.95]},
   {key: "error", label: "reprojection error", unit: () => "px", values: cloud => arrayOf(cloud.errors), limits: [null, 0.98]},
   {key: "track", label: "images that see the point", unit: () => "images", values: cloud => arrayOf(cloud.track_lengths), limits: [0, 0.98]},
 ];
 
+/** @param {Cloud} cloud */
 export function unitOf(cloud) {
   return cloud.unit === "m" ? "m" : "model units";
 }
 
-/* The ends of the colours over some clouds; a limit of null is 0. */
+/** The ends of the colours over some clouds; a limit of null is 0.
+ * @param {PointColour} kind @param {Cloud[]} clouds @returns {Span | null} */
 export function colourLimits(kind, clouds) {
   const sorted = sortedKnown(clouds.flatMap(cloud => Array.from(kind.values(cloud))));
   if (!sorted.length) return null;
@@ -68,34 +71,40 @@ export function colourLimits(kind, clouds) {
   return high > low ? [low, high] : [low, low + 1];
 }
 
-/* A pixel of a canvas as one number, in the order of its bytes. */
-function pixel(red, green, blue) {
+/** A pixel of a canvas as one number, in the order of its bytes.
+ * @param {number[]} colour */
+function pixel([red, green, blue]) {
   return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
 }
 
+/** @param {string} colour  As "#0072b2". */
 export function pixelOf(colour) {
-  return pixel(...[1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16)));
+  return pixel([1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16)));
 }
 
 /* The part of the scale that stands out from the ground: its dark end is lost on a dark one, its bright end on white. */
 const VISIBLE = {light: [0, 0.9], dark: [0.3, 1]};
 const STEPS_OF_SCALE = 256;
 
+/** @param {Theme} theme */
 export function scaleColours(theme) {
   const [low, high] = VISIBLE[theme];
   return Array.from({length: STEPS_OF_SCALE}, (_, i) => onCividis(low + (high - low) * i / (STEPS_OF_SCALE - 1)));
 }
 
-/* One pixel a point; the unknown ones in the colour of lines. */
+/** One pixel a point; the unknown ones in the colour of lines.
+ * @param {Cloud} cloud @param {PointColour} kind @param {Span | null} limits @param {Theme} theme */
 export function pointPixels(cloud, kind, limits, theme) {
   const colours = arrayOf(cloud.colours);
   const pixels = new Uint32Array(colours.length / 3);
   if (kind.key === "image") {
-    return pixels.map((_, i) => pixel(colours[3 * i], colours[3 * i + 1], colours[3 * i + 2]));
+    return pixels.map((_, i) => pixel([colours[3 * i], colours[3 * i + 1], colours[3 * i + 2]]));
   }
   const values = kind.values(cloud);
   const unknown = pixelOf(THEMES[theme].line);
-  const steps = scaleColours(theme).map(colour => pixel(...colour.match(/\d+/g).map(Number)));
-  const stepOf = value => Math.round((STEPS_OF_SCALE - 1) * clamped((value - limits[0]) / (limits[1] - limits[0]), 0, 1));
-  return pixels.map((_, i) => (limits && Number.isFinite(values[i]) ? steps[stepOf(values[i])] : unknown));
+  if (!limits) return pixels.fill(unknown);
+  const steps = scaleColours(theme).map(colour => pixel((colour.match(/\d+/g) ?? []).map(Number)));
+  const [low, high] = limits;
+  const stepOf = (/** @type {number} */ value) => Math.round((STEPS_OF_SCALE - 1) * clamped((value - low) / (high - low), 0, 1));
+  return pixels.map((_, i) => (Number.isFinite(values[i]) ? steps[stepOf(values[i])] : unknown));
 }

@@ -1,6 +1,7 @@
 /* What is seen of the clouds: the two that were chosen, turned together. */
 
 import {themeName, THEMES} from "../basis/colours.js";
+import {make} from "../basis/elements.js";
 import {remember} from "../basis/entries.js";
 import {counted, sentenceCase, shown} from "../basis/numbers.js";
 import {arrayOf, payload} from "../basis/payload.js";
@@ -8,10 +9,15 @@ import {currentEntry} from "../basis/state.js";
 import {drawCloud} from "./cloud-drawing.js";
 import {FRONT, pixelOf} from "./cloud-space.js";
 
-export const cloudView = {turn: {...FRONT}, playing: false};
+/** @type {{turn: Turn, playing: boolean, stage: Stage3D | null, controls: Record<string, Control>, layers: Layer[],
+ *   panels: CloudPanel[], play: HTMLElement, legend: HTMLElement}} */
+export const cloudView = {turn: {...FRONT}, playing: false, stage: null, controls: {}, layers: [], panels: [],
+  play: make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false"}, "Turn"),
+  legend: make("div", {class: "cloud-legend"})};
 
+/** @param {Entry} entry */
 export function cloudsOf(entry) {
-  return remember(entry, "clouds", () => (payload.clouds ?? []).filter(cloud => cloud.entry === entry.name));
+  return remember(entry, "clouds", () => payload.clouds.filter(cloud => cloud.entry === entry.name));
 }
 
 export function drawClouds() {
@@ -19,8 +25,8 @@ export function drawClouds() {
   if (!cloudsOf(entry).length || !cloudView.stage) return;
   const colours = THEMES[themeName()];
   const [cameras, truth] = cloudView.layers.map(layer => layer.value());
-  for (const {canvas, cloud, pixels} of cloudView.panels) {
-    const width = Math.floor(canvas.parentElement.clientWidth) - 2 * parseFloat(getComputedStyle(canvas.parentElement).paddingLeft);
+  for (const {canvas, cloud, pixels, element} of cloudView.panels) {
+    const width = Math.floor(element.clientWidth) - 2 * parseFloat(getComputedStyle(element).paddingLeft);
     canvas.hidden = !cloud;
     if (!cloud || !pixels || width <= 0) continue;
     const height = Math.round(Math.min(460, Math.max(280, width * 0.72)));
@@ -29,12 +35,14 @@ export function drawClouds() {
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, {width: wide, height: tall});
     canvas.style.height = `${height}px`;
     const view = {cloud, pixels, turn: cloudView.turn, stage: cloudView.stage, cameras, truth, colours, ground: pixelOf(colours.surface)};
-    drawCloud(canvas.getContext("2d", {willReadFrequently: true}), view, wide, tall, density);
+    const pen = canvas.getContext("2d", {willReadFrequently: true});
+    if (pen) drawCloud(pen, view, wide, tall, density);
     canvas.setAttribute("aria-label", `Cloud of ${cloud.combination}. ${cloudNote(cloud)}`);
   }
 }
 
-/* What is drawn, and what is not. */
+/** What is drawn, and what is not.
+ * @param {Cloud | null} cloud */
 export function cloudNote(cloud) {
   if (!cloud) return "There is no cloud of this combination.";
   const drawn = arrayOf(cloud.colours).length / 3;

@@ -9,7 +9,7 @@ import {sentenceCase, shown} from "../basis/numbers.js";
 import {currentEntry} from "../basis/state.js";
 import {colourLimits, POINT_COLOURS, pointPixels, scaleColours, sortedKnown, stageOf} from "./cloud-space.js";
 import {cloudNote, cloudsOf, cloudView, drawClouds} from "./cloud-view.js";
-import {modelColumns, modelsOf} from "./models-table.js";
+import {modelColumns} from "./models-table.js";
 import {listenToTurns, setPlaying, turnBy} from "./turning.js";
 import {layerControl, selectControl} from "../shell/controls.js";
 
@@ -23,32 +23,37 @@ const TURNS = [
   ["▼", "See more from the side", "ArrowDown"], ["+", "Nearer", "+"], ["−", "Farther", "-"],
 ];
 
-/* Clouds of combinations that pass the filter; all, if none does. */
+/** Clouds of combinations that pass the filter; all, if none does.
+ * @param {Entry} entry */
 function cloudsToShow(entry) {
   const passes = currentFilter();
   const found = cloudsOf(entry).filter(cloud => passes(cloud.combination.split("-")));
   return found.length ? found : cloudsOf(entry);
 }
 
+/** @param {string} name @param {string} label @param {number} place @returns {ControlSpec} */
 function cloudChoice(name, label, place) {
   return {name, label,
     options: entry => cloudsToShow(entry).map(({combination, why}) => ({key: combination, label: `${combination} (${why})`})),
     fallback: entry => (cloudsToShow(entry)[place] ?? cloudsToShow(entry)[0])?.combination};
 }
 
+/** @type {ControlSpec} */
 const CLOUD_COLOURS = {name: "colour", label: "Colours", fallback: () => "image",
   options: entry => POINT_COLOURS.filter(kind => kind.key === "image" || cloudsOf(entry).some(cloud => sortedKnown(kind.values(cloud)).length))
     .map(({key, label}) => ({key, label}))};
 
+/** @param {HTMLElement} parent */
 export function buildClouds(parent) {
   const controls = {left: selectControl("cloud", cloudChoice("left", "First", 0)),
     right: selectControl("cloud", cloudChoice("right", "Second", 1)), colour: selectControl("cloud", CLOUD_COLOURS)};
   const layers = CLOUD_LAYERS.map(layer => layerControl("cloud", layer));
-  const play = make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false", hidden: stillWanted.matches, onclick: () => setPlaying(!cloudView.playing)}, "Turn");
+  const {play, legend} = cloudView;
+  play.hidden = stillWanted.matches;
+  play.addEventListener("click", () => setPlaying(!cloudView.playing));
   const buttons = TURNS.map(([sign, label, key]) => make("button", {type: "button", class: "quiet", "aria-label": label, title: label, onclick: () => turnBy(key)}, sign));
-  const panels = ["left", "right"].map(side => buildCloudPanel(side));
-  const legend = make("div", {class: "cloud-legend"});
-  Object.assign(cloudView, {controls, layers, panels, play, legend});
+  const panels = ["left", "right"].map(buildCloudPanel);
+  Object.assign(cloudView, {controls, layers, panels});
   parent.append(
     make("h3", {}, "Clouds"),
     make("p", {class: "read"}, "Both are seen from the same place. Drag to turn, or use the arrow keys; + and − come nearer and go away, Home "
@@ -57,15 +62,16 @@ export function buildClouds(parent) {
     legend, make("div", {class: "panels"}, panels.map(panel => panel.element)));
 }
 
+/** @param {string} side @returns {CloudPanel} */
 function buildCloudPanel(side) {
   const canvas = make("canvas", {role: "img", tabindex: "0", "data-side": side});
-  const panel = {side, canvas, title: make("h4"), note: make("p", {class: "note"}), words: make("div", {class: "words"})};
+  const [title, note, words] = [make("h4"), make("p", {class: "note"}), make("div", {class: "words"})];
   const save = make("button", {type: "button", class: "quiet", "aria-label": `Save the ${side} cloud as PNG`,
-    onclick: () => canvas.toBlob(blob => saveFile(`${fileStem(currentEntry().name, "cloud", panel.title.textContent)}.png`, blob))}, "PNG");
-  panel.element = make("article", {class: "panel-of-cloud"}, make("div", {class: "panel-title"}, panel.title, save), canvas, panel.note, panel.words);
+    onclick: () => canvas.toBlob(blob => saveFile(`${fileStem(currentEntry().name, "cloud", title.textContent ?? "")}.png`, blob, "image/png"))}, "PNG");
+  const element = make("article", {class: "panel-of-cloud"}, make("div", {class: "panel-title"}, title, save), canvas, note, words);
   listenToTurns(canvas);
-  new ResizeObserver(() => drawClouds()).observe(panel.element);
-  return panel;
+  new ResizeObserver(() => drawClouds()).observe(element);
+  return {side, canvas, title, note, words, element, cloud: null, pixels: null};
 }
 
 export function refreshClouds() {
@@ -79,7 +85,7 @@ function updateClouds() {
   for (const panel of cloudView.panels) {
     const combination = cloudView.controls[panel.side].value();
     panel.cloud = clouds.find(cloud => cloud.combination === combination) ?? null;
-    panel.title.textContent = combination ?? "";
+    panel.title.textContent = combination;
     panel.words.replaceChildren(...cloudWords(panel.cloud));
     panel.note.textContent = cloudNote(panel.cloud);
   }
@@ -89,9 +95,9 @@ function updateClouds() {
 
 /* The same colours mean the same in both. */
 function colourClouds() {
-  const kind = POINT_COLOURS.find(each => each.key === cloudView.controls.colour.value());
-  const shownClouds = cloudView.panels.map(panel => panel.cloud).filter(Boolean);
-  const limits = kind.values ? colourLimits(kind, shownClouds) : null;
+  const kind = POINT_COLOURS.find(each => each.key === cloudView.controls.colour.value()) ?? POINT_COLOURS[0];
+  const shownClouds = cloudView.panels.flatMap(({cloud}) => (cloud ? [cloud] : []));
+  const limits = colourLimits(kind, shownClouds);
   for (const panel of cloudView.panels) panel.pixels = panel.cloud && pointPixels(panel.cloud, kind, limits, themeName());
   cloudView.legend.hidden = !limits;
   if (!limits) return;
@@ -104,11 +110,13 @@ function colourClouds() {
 const FIGURES_OF_CLOUDS = ["registered_images", "placed_images", "points_3d", "mean_track_length", "reprojection_error", "position_rmse",
   "cloud_distance_rms", "reference_distance_rms"];
 
+/** @param {Cloud | null} cloud */
 function cloudWords(cloud) {
   const entry = currentEntry();
-  const models = modelsOf(entry);
-  const m = cloud ? models?.combinations.indexOf(cloud.combination) ?? -1 : -1;
-  if (m < 0) return [];
+  const {models} = entry;
+  const m = cloud && models ? models.combinations.indexOf(cloud.combination) : -1;
+  if (!models || m < 0) return [];
+  /** @type {[string, string][]} */
   const rows = modelColumns(entry).filter(({key}) => FIGURES_OF_CLOUDS.includes(key)).map(column => [column.label, column.text(m)]);
   const reason = models.message[m];
   return [reason ? make("p", {class: "note"}, sentenceCase(reason)) : "", figuresList([["Status", models.status[m].replaceAll("_", " ")], ...rows])];

@@ -14,6 +14,7 @@ import {scatterFrame} from "../shell/points.js";
 
 const C2C_STATISTICS = [["median", "circle"], ["rms", "diamond"], ["p95", "line-ns-open"]];
 
+/** @type {FigureSpec} */
 export const CLOUD_DISTANCES = {
   id: "c2c", title: "Distances between clouds",
   read: "From each point to the nearest point of the reference’s cloud, and back (C2C, as CloudCompare measures it). A short way to the "
@@ -33,7 +34,7 @@ export const CLOUD_DISTANCES = {
       marker: {symbol, size: 9, color: THEMES[theme].series[i], line: {color: THEMES[theme].series[i], width: 2}},
       hovertemplate: "%{y}<br>%{x:.3g}<extra>%{fullData.name}</extra>",
     })));
-    const values = data.flatMap(trace => trace.x).filter(value => value > 0);
+    const values = data.flatMap(trace => trace.x).filter(value => Number(value) > 0);
     return {
       data, height: 26 * rows.length + (narrow ? 190 : 130),
       layout: {
@@ -45,20 +46,24 @@ export const CLOUD_DISTANCES = {
   },
 };
 
+/** @param {Entry} entry */
 function modelLabelWithUnit(entry) {
   const unit = modelColumn(entry, "cloud_distance_rms")?.unit;
   return `distance in ${unit === "m" ? "metres" : "units of the reference’s model"}`;
 }
 
+/** @param {Entry} entry @returns {true | string} */
 function hasRelations(entry) {
   const found = entry.models?.relations;
   if (!found) return "There are no models.";
   return found.unavailable ? sentenceCase(`${found.unavailable}.`) : true;
 }
 
+/** @type {ControlSpec} */
 const MEASURE_OF_RELATION = {name: "measure", label: "Correlation", fallback: () => "spearman",
   options: () => [{key: "spearman", label: "Spearman’s (of ranks)"}, {key: "pearson", label: "Pearson’s (of values)"}]};
 
+/** @type {FigureSpec} */
 export const OUTCOME_MATRIX = {
   id: "outcomes", title: "Do good matches make good models?",
   read: "Correlation over the combinations of what was measured of pairs of images (rows) with what became of the models (columns). What "
@@ -66,16 +71,18 @@ export const OUTCOME_MATRIX = {
   controls: [MEASURE_OF_RELATION], ignoresFilter: true, wide: true,
   available: hasRelations,
   draw({entry, option, theme, narrow}) {
-    const found = modelsOf(entry).relations;
+    const found = relationsOf(entry);
+    const spearmans = option("measure") === "spearman";
     const numbers = found.numbers.flat().filter(number => number >= found.fewest);
     return {
-      ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: found[option("measure")], theme, narrow,
-        what: option("measure") === "spearman" ? "Spearman" : "Pearson"}),
+      ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: spearmans ? found.spearman : found.pearson, theme, narrow,
+        what: spearmans ? "Spearman" : "Pearson"}),
       note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations, whatever the filter.`,
     };
   },
 };
 
+/** @type {FigureSpec} */
 export const OUTCOME_SCATTER = {
   id: "outcome", title: "A figure of pairs against a model",
   read: "One dot a combination. Choose what was measured of pairs, and what of models.",
@@ -90,27 +97,38 @@ export const OUTCOME_SCATTER = {
   draw: outcomePoints,
 };
 
-function relationOptions(entry, kind) {
-  const found = entry.models?.relations;
-  return (found?.[kind] ?? []).map(name => ({key: name, label: labelOf(name)}));
+/** The relations of an entry of which `hasRelations` is true.
+ * @param {Entry} entry @returns {Relations} */
+function relationsOf(entry) {
+  const {relations} = modelsOf(entry);
+  if (relations.unavailable !== undefined) throw new Error(relations.unavailable);
+  return relations;
 }
 
+/** @param {Entry} entry @param {"features" | "outcomes"} kind @returns {Option[]} */
+function relationOptions(entry, kind) {
+  return (entry.models?.relations[kind] ?? []).map(name => ({key: name, label: labelOf(name)}));
+}
+
+/** @param {Option[]} options @param {string[]} wanted */
 function preferredOption(options, wanted) {
   const keys = options.map(({key}) => key);
   return wanted.find(key => keys.includes(key)) ?? keys[0];
 }
 
+/** @param {FigureContext} context @returns {Drawn} */
 function outcomePoints({entry, option, theme, narrow}) {
   const models = modelsOf(entry);
-  const {combinations, values, fewest} = models.relations;
+  const {combinations, values, fewest} = relationsOf(entry);
   const [xName, yName] = [option("x"), option("y")];
-  const place = new Map(models.combinations.map((name, m) => [name, m]));
   const passes = currentFilter();
-  const found = combinations.map((name, i) => ({name, x: values[xName][i], m: place.get(name)}))
-    .map(each => ({...each, y: outcomeOf(models, yName, each.m)}))
-    .filter(({name, x, y}) => passes(name.split("-")) && isKnown(x) && isKnown(y));
+  const found = combinations.flatMap((name, i) => {
+    const m = models.combinations.indexOf(name);
+    const [x, y] = [values[xName][i], outcomeOf(models, yName, m)];
+    return passes(name.split("-")) && isKnown(x) && isKnown(y) ? [{name, m, x, y}] : [];
+  });
   if (!found.length) return {empty: "None of these combinations has both values."};
-  const code = CODES.indexOf(option("colour"));
+  const code = CODES.findIndex(each => each === option("colour"));
   const groups = [...new Set(found.map(({name}) => name.split("-")[code]))].sort();
   return {
     data: groups.map((group, i) => {
@@ -129,8 +147,9 @@ function outcomePoints({entry, option, theme, narrow}) {
 
 const WITHOUT_MODEL = ["no_features", "no_verified_pair", "no_initial_pair", "no_model"];
 
-/* The value that counts for a relation, as in `scoring/outcomes.py`: no model is 0 images, a crash is unknown; what
-   describes a model is of those that succeeded; the reference has no distance to itself. */
+/** The value that counts for a relation, as in `scoring/outcomes.py`: no model is 0 images, a crash is unknown; what
+ * describes a model is of those that succeeded; the reference has no distance to itself.
+ * @param {Models} models @param {string} name @param {number} m */
 function outcomeOf(models, name, m) {
   const value = models.values[name]?.[m] ?? null;
   const status = models.status[m];

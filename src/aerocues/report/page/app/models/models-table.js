@@ -5,9 +5,14 @@ import {CODES, remember} from "../basis/entries.js";
 import {currentFilter} from "../basis/filter.js";
 import {duration, isKnown, labelOf, NONE, sentenceCase, shown} from "../basis/numbers.js";
 
+/** The models of an entry that has some.
+ * @param {Entry} entry */
 export function modelsOf(entry) {
-  return entry.models ?? null;
+  if (!entry.models) throw new Error(`${entry.name} has no models`);
+  return entry.models;
 }
+
+/** @type {ColumnTableSpec} */
 export const MODELS = {
   id: "reconstructions", title: "All reconstructions", prefix: "models.", natural: "place",
   columns: modelColumns, rows: shownModels,
@@ -17,35 +22,40 @@ export const MODELS = {
   isMarked: (entry, m) => modelsOf(entry).status[m] === "ok",
 };
 
-/* A number `m` is the position of a reconstruction; of those that pass the filter, the best first. */
+/** A number `m` is the position of a reconstruction; of those that pass the filter, the best first.
+ * @param {Entry} entry */
 export function shownModels(entry) {
   const models = modelsOf(entry);
   const passes = currentFilter();
   return placed(entry).filter(m => passes(CODES.map(code => models[code][m])));
 }
 
+/** @param {Entry} entry */
 function placed(entry) {
   return remember(entry, "placed models", () => {
     const models = modelsOf(entry);
-    const figure = (name, m) => models.values[name]?.[m] ?? -1;
-    const failed = m => Number(models.status[m] !== "ok");
+    const figure = (/** @type {string} */ name, /** @type {number} */ m) => models.values[name]?.[m] ?? -1;
+    const failed = (/** @type {number} */ m) => Number(models.status[m] !== "ok");
     return models.combinations.map((_, m) => m).sort((a, b) => failed(a) - failed(b)
       || figure("registered_images", b) - figure("registered_images", a)
       || figure("points_3d", b) - figure("points_3d", a) || a - b);
   });
 }
 
+/** @param {Entry} entry @param {string} key */
 export function modelColumn(entry, key) {
   return modelsOf(entry).columns.find(column => column.name === key) ?? null;
 }
 
-/* A figure with its unit, where that is not told by the number itself. */
+/** A figure with its unit, where that is not told by the number itself.
+ * @param {ModelColumn} column @param {Value} value */
 function modelText({name, unit}, value) {
   if (/seconds/.test(name)) return duration(value);
   if (!isKnown(value)) return NONE;
   return ["px", "m", "degree"].includes(unit) ? `${shown(value)} ${unit === "degree" ? "°" : unit}` : shown(value);
 }
 
+/** @param {ModelColumn} column */
 function modelLabel({name, unit}) {
   return unit === "model units" ? `${labelOf(name)}, model units` : labelOf(name);
 }
@@ -53,34 +63,41 @@ function modelLabel({name, unit}) {
 const USUAL_OF_MODELS = ["registered_images", "points_3d", "mean_track_length", "reprojection_error", "position_rmse",
   "cloud_distance_rms", "reconstruction_seconds"];
 
+/** @param {Entry} entry @returns {Column[]} */
 export function modelColumns(entry) {
   return remember(entry, "model columns", () => {
     const models = modelsOf(entry);
     const place = new Map(placed(entry).map((m, i) => [m, i + 1]));
     const ranks = new Map(entry.combinations.map((name, a) => [name, entry.score.rank[a]]));
-    const rank = m => ranks.get(models.combinations[m]) ?? null;
-    return [
+    const rank = (/** @type {number} */ m) => ranks.get(models.combinations[m]) ?? null;
+    /** @type {Column} */
+    const reason = {key: "message", label: "Reason", usual: true, kind: "reason", title: "Why it failed, or what is unusual",
+      value: m => models.message[m], text: m => models.message[m] ?? ""};
+    /** @type {Column[]} */
+    const columns = [
       {key: "place", label: "Place", number: true, usual: true, title: "By success, registered images and 3D points",
-        value: m => place.get(m), text: m => shown(place.get(m))},
+        value: m => place.get(m) ?? null, text: m => shown(place.get(m) ?? null)},
       {key: "combination", label: "Combination", usual: true, title: "Detector-descriptor-norm-matcher",
         value: m => models.combinations[m], text: m => models.combinations[m]},
       {key: "rank", label: "Rank by CUES", number: true, usual: models.combinations.some((_, m) => rank(m) !== null),
         title: "Place in the table of all combinations", value: rank, text: m => shown(rank(m))},
       {key: "status", label: "Status", usual: true, title: "How the reconstruction ended",
         value: m => models.status[m], text: m => models.status[m],
-        cell: m => make("span", {title: models.statuses?.[models.status[m]]}, models.status[m].replaceAll("_", " "))},
+        cell: m => make("span", {title: models.statuses[models.status[m]]}, models.status[m].replaceAll("_", " "))},
       ...models.columns.map(column => figureColumn(models, column)),
-      ...(models.message.some(Boolean) ? [{key: "message", label: "Reason", usual: true, kind: "reason",
-        title: "Why it failed, or what is unusual", value: m => models.message[m] ?? null, text: m => models.message[m] ?? ""}] : []),
+      ...(models.message.some(Boolean) ? [reason] : []),
     ];
+    return columns;
   });
 }
 
+/** @param {Models} models @param {ModelColumn} column @returns {Column} */
 function figureColumn(models, column) {
   const values = models.values[column.name];
   const images = models.values.images;
-  const counted = column.name === "registered_images" && images;
+  const ofAll = (/** @type {number} */ m) => (column.name === "registered_images" && isKnown(values[m]) && isKnown(images?.[m])
+    ? ` of ${shown(images[m])}` : "");
   return {key: column.name, label: sentenceCase(modelLabel(column)), number: true, usual: USUAL_OF_MODELS.includes(column.name),
-    title: column.definition, value: m => values[m] ?? null,
-    text: m => `${modelText(column, values[m])}${counted && isKnown(values[m]) && isKnown(images[m]) ? ` of ${shown(images[m])}` : ""}`};
+    title: column.definition, value: m => values[m],
+    text: m => modelText(column, values[m]) + ofAll(m)};
 }

@@ -5,38 +5,41 @@ import {currentEntry} from "../basis/state.js";
 import {cloudsOf} from "./cloud-view.js";
 import {buildClouds, refreshClouds} from "./clouds.js";
 import {CLOUD_DISTANCES, OUTCOME_MATRIX, OUTCOME_SCATTER} from "./model-figures.js";
-import {MODELS, modelsOf} from "./models-table.js";
+import {MODELS} from "./models-table.js";
 import {addColumnTable, updateColumnTable} from "../shell/column-table.js";
 import {addFigure} from "../shell/figure.js";
 
-const modelParts = {};
+const hint = make("div", {class: "figure wide", id: "no-models"}, howToReconstruct());
+const frame = make("div", {class: "figure wide", id: "modelled"});
+const made = make("p", {class: "note"});
+const clouds = make("div", {class: "figure wide", id: "clouds"});
+/** @type {Figure[]} */
+let figures = [];
 
+/** @type {SectionSpec} */
 export const MODELS_SECTION = {
   id: "models",
   title: "3D",
   read: "The scene as each combination reconstructs it, with COLMAP: what became of the models, how they look, how far "
     + "they are from each other, and whether good matches make good models.",
   build(body) {
-    modelParts.hint = make("div", {class: "figure wide", id: "no-models"}, ...howToReconstruct());
-    modelParts.frame = make("div", {class: "figure wide", id: "modelled"});
-    modelParts.table = addColumnTable(modelParts.frame, MODELS);
-    modelParts.made = modelParts.frame.appendChild(make("p", {class: "note"}));
-    modelParts.clouds = make("div", {class: "figure wide", id: "clouds"});
-    buildClouds(modelParts.clouds);
-    body.append(modelParts.hint, modelParts.frame, modelParts.clouds);
-    modelParts.figures = [CLOUD_DISTANCES, OUTCOME_SCATTER, OUTCOME_MATRIX].map(spec => addFigure(body, spec));
+    addColumnTable(frame, MODELS);
+    frame.append(made);
+    buildClouds(clouds);
+    body.append(hint, frame, clouds);
+    figures = [CLOUD_DISTANCES, OUTCOME_SCATTER, OUTCOME_MATRIX].map(spec => addFigure(body, spec));
   },
-  update(body, changed) {
+  update(_, changed) {
     const entry = currentEntry();
-    const models = modelsOf(entry);
-    modelParts.hint.hidden = models !== null;
-    modelParts.frame.hidden = models === null;
-    modelParts.clouds.hidden = !cloudsOf(entry).length;
-    for (const figure of modelParts.figures) figure.element.hidden = models === null;
+    const {models} = entry;
+    hint.hidden = models !== null;
+    frame.hidden = models === null;
+    clouds.hidden = !cloudsOf(entry).length;
+    for (const figure of figures) figure.element.hidden = models === null;
     if (!models) return;
     if ([...changed].some(key => !key.includes(".") || key.startsWith("models."))) {
-      updateColumnTable(modelParts.table, changed);
-      modelParts.made.textContent = howMade(models);
+      updateColumnTable(MODELS, changed);
+      made.textContent = howMade(models);
     }
     refreshClouds();
   },
@@ -49,9 +52,10 @@ function howToReconstruct() {
     make("pre", {class: "citation", tabindex: "0"}, "aerocues reconstruct DATASET -o MODELS --from RESULTS --top 20")];
 }
 
-/* What is the same for all models. */
-function howMade({made, reference}) {
-  const words = Object.entries(made ?? {}).map(([name, value]) => `${name.replaceAll("_", " ")} ${value}`);
+/** What is the same for all models.
+ * @param {Models} models */
+function howMade(models) {
+  const words = Object.entries(models.made).map(([name, value]) => `${name.replaceAll("_", " ")} ${value}`);
   return [words.length ? `The same for all: ${words.join("; ")}.` : "",
-    reference ? `C2C: distances of points to the nearest point of the model of ${reference}, and back.` : ""].filter(Boolean).join(" ");
+    models.reference ? `C2C: distances of points to the nearest point of the model of ${models.reference}, and back.` : ""].filter(Boolean).join(" ");
 }

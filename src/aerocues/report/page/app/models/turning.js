@@ -5,8 +5,10 @@ import {FRONT} from "./cloud-space.js";
 import {cloudView, drawClouds} from "./cloud-view.js";
 
 const DEGREES_A_SECOND = 14;
+/** @type {Record<string, Partial<Turn>>} */
 const STEPS = {ArrowLeft: {yaw: 8}, ArrowRight: {yaw: -8}, ArrowUp: {pitch: 6}, ArrowDown: {pitch: -6}, "+": {zoom: 1.25}, "=": {zoom: 1.25}, "-": {zoom: 0.8}};
 
+/** @param {string} key */
 export function turnBy(key) {
   const step = STEPS[key];
   const {turn} = cloudView;
@@ -16,7 +18,9 @@ export function turnBy(key) {
   drawClouds();
 }
 
+/** @param {HTMLCanvasElement} canvas */
 export function listenToTurns(canvas) {
+  /** @type {Map<number, PointerEvent>} */
   const held = new Map();
   canvas.addEventListener("pointerdown", event => {
     canvas.setPointerCapture(event.pointerId);
@@ -32,7 +36,8 @@ export function listenToTurns(canvas) {
     else turnByDragging(event.clientX - before.clientX, event.clientY - before.clientY, event.pointerType === "touch");
     drawClouds();
   });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, event => held.delete(event.pointerId));
+  canvas.addEventListener("pointerup", event => held.delete(event.pointerId));
+  canvas.addEventListener("pointercancel", event => held.delete(event.pointerId));
   canvas.addEventListener("wheel", event => {
     // A page that is scrolled over a cloud scrolls on; one that has the focus is meant.
     if (document.activeElement !== canvas && !event.ctrlKey) return;
@@ -51,19 +56,22 @@ export function listenToTurns(canvas) {
   });
 }
 
+/** @param {Map<number, PointerEvent>} held */
 function spreadOf(held) {
   const [first, second] = [...held.values()];
   return Math.hypot(first.clientX - second.clientX, first.clientY - second.clientY) || 1;
 }
 
-/* On touch screens up and down scroll the page. */
+/** On touch screens up and down scroll the page.
+ * @param {number} x @param {number} y @param {boolean} byTouch */
 function turnByDragging(x, y, byTouch) {
   const {turn} = cloudView;
   turn.yaw -= x * 0.4;
   if (!byTouch) turn.pitch = clamped(turn.pitch + y * 0.3, 0, 90);
 }
 
-/* Turns slowly by itself for as long as it is asked to: never unasked. */
+/** Turns slowly by itself for as long as it is asked to: never unasked.
+ * @param {boolean} wanted */
 export function setPlaying(wanted) {
   if (cloudView.playing === wanted) return;
   cloudView.playing = wanted;
@@ -72,6 +80,7 @@ export function setPlaying(wanted) {
   if (wanted) requestAnimationFrame(time => keepTurning(time, time));
 }
 
+/** @param {number} time @param {number} before */
 function keepTurning(time, before) {
   if (!cloudView.playing) return;
   cloudView.turn.yaw += DEGREES_A_SECOND * Math.min(time - before, 100) / 1000;

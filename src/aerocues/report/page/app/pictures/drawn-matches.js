@@ -3,25 +3,33 @@
 import {counted} from "../basis/numbers.js";
 import {arrayOf, payload} from "../basis/payload.js";
 
-export const pictureView = {};
+/** @type {{controls: Record<string, Control>, layers: Layer[], panels: PicturePanel[]}} */
+export const pictureView = {controls: {}, layers: [], panels: []};
 const INLIER = "#38c6ff";
 const OUTLIER = "#ff8a1f";
 const KEYPOINT = "#ffe04a";
 const LEGIBLE_MATCHES = 150;
+/** @type {Map<string, Promise<HTMLImageElement>>} */
 const loadedImages = new Map();
 
+/** @param {string} key */
 function loadImage(key) {
-  if (!loadedImages.has(key)) {
-    loadedImages.set(key, new Promise((resolve, reject) => {
-      const image = new Image();
-      image.onload = () => resolve(image);
-      image.onerror = () => reject(new Error(`the image ${key} cannot be shown`));
-      image.src = payload.images[key].src;
-    }));
-  }
-  return loadedImages.get(key);
+  const known = loadedImages.get(key);
+  if (known) return known;
+  /** @type {Promise<HTMLImageElement>} */
+  const loading = new Promise((resolve, reject) => {
+    const image = new Image();
+    image.onload = () => resolve(image);
+    image.onerror = () => reject(new Error(`the image ${key} cannot be shown`));
+    image.src = payload.images[key].src;
+  });
+  loadedImages.set(key, loading);
+  return loading;
 }
 
+/** @typedef {ReturnType<typeof placement>} Placement */
+
+/** @param {PicturePanel} panel */
 export async function drawPanel(panel) {
   const {picture, canvas, element} = panel;
   canvas.hidden = !picture;
@@ -38,7 +46,7 @@ export async function drawPanel(panel) {
   const density = Math.min(window.devicePixelRatio || 1, 2);
   Object.assign(canvas, {width: Math.round(width * density), height: Math.round(place.height * density)});
   canvas.style.height = `${place.height}px`;
-  const pen = canvas.getContext("2d");
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   pen.scale(density, density);
   images.forEach((image, i) => pen.drawImage(image, place.left[i], place.top[i], place.width[i], place.tall[i]));
   const drawn = drawLayers(pen, picture, place);
@@ -46,7 +54,8 @@ export async function drawPanel(panel) {
   canvas.setAttribute("aria-label", `Matches of ${picture.combination}. ${drawn}`);
 }
 
-/* Beside each other, or one above the other where that is larger. */
+/** Beside each other, or one above the other where that is larger.
+ * @param {Picture} picture @param {number} width */
 function placement(picture, width) {
   const [first, second] = [payload.images[picture.image_1], payload.images[picture.image_2]];
   const gap = 4;
@@ -54,7 +63,8 @@ function placement(picture, width) {
   const factor = stacked
     ? width / Math.max(first.width, second.width)
     : (width - gap) / (first.width + second.width);
-  const [widths, talls] = [[first.width, second.width], [first.height, second.height]].map(sizes => sizes.map(size => size * factor));
+  const widths = [first.width * factor, second.width * factor];
+  const talls = [first.height * factor, second.height * factor];
   return {
     width: widths, tall: talls,
     left: [0, stacked ? 0 : widths[0] + gap], top: [0, stacked ? talls[0] + gap : 0],
@@ -63,11 +73,14 @@ function placement(picture, width) {
   };
 }
 
+/** The place of a point of an image on the canvas.
+ * @param {Placement} place @param {number} image @param {number} x @param {number} y @returns {[number, number]} */
 function at(place, image, x, y) {
   return [place.left[image] + (x + 0.5) * place.scale[image], place.top[image] + (y + 0.5) * place.scale[image]];
 }
 
-/* Draws what is switched on; tells in words what was drawn. */
+/** Draws what is switched on; tells in words what was drawn.
+ * @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place */
 function drawLayers(pen, picture, place) {
   const words = [];
   const [inliers, outliers, keypoints] = pictureView.layers.map(layer => layer.value());
@@ -77,12 +90,13 @@ function drawLayers(pen, picture, place) {
   return words.join(" ") || "No layer is switched on.";
 }
 
+/** @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place */
 function drawKeypoints(pen, picture, place) {
   pen.strokeStyle = KEYPOINT;
   pen.lineWidth = 1;
   pen.beginPath();
-  ["keypoints_1", "keypoints_2"].forEach((name, image) => {
-    const points = arrayOf(picture[name]);
+  [picture.keypoints_1, picture.keypoints_2].forEach((packed, image) => {
+    const points = arrayOf(packed);
     for (let i = 0; i < points.length; i += 2) {
       const [x, y] = at(place, image, points[i], points[i + 1]);
       pen.moveTo(x + 2, y);
@@ -94,6 +108,7 @@ function drawKeypoints(pen, picture, place) {
   return every > 1 ? `Every ${ordinal(every)} keypoint is drawn.` : "All keypoints are drawn.";
 }
 
+/** @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place @param {Record<number, boolean>} wanted */
 function drawMatches(pen, picture, place, wanted) {
   const [matches, inlier] = [arrayOf(picture.matches), arrayOf(picture.inlier)];
   const indices = [...inlier.keys()].filter(i => wanted[inlier[i]]);
@@ -113,7 +128,8 @@ function drawMatches(pen, picture, place, wanted) {
     + `${counted(share, "inlier")}, ${counted(drawn.length - share, "outlier")}.`;
 }
 
-/* Every n-th match, as asked for; by itself, so many that single ones can be told apart. */
+/** Every n-th match, as asked for; by itself, so many that single ones can be told apart.
+ * @param {number} count */
 function matchStep(count) {
   const chosenStep = pictureView.controls.every.value();
   if (chosenStep !== "auto") return Number(chosenStep);
@@ -121,6 +137,7 @@ function matchStep(count) {
   return steps.find(step => count / step <= LEGIBLE_MATCHES) ?? 50;
 }
 
+/** @param {CanvasRenderingContext2D} pen @param {Numbers} match @param {Placement} place */
 function drawMatch(pen, [x1, y1, x2, y2], place) {
   const [from, to] = [at(place, 0, x1, y1), at(place, 1, x2, y2)];
   pen.beginPath();
@@ -134,8 +151,9 @@ function drawMatch(pen, [x1, y1, x2, y2], place) {
   }
 }
 
+/** @param {number} number */
 function ordinal(number) {
   const last = number % 10;
   const teen = Math.floor(number / 10) % 10 === 1;
-  return `${number}${teen ? "th" : ({1: "st", 2: "nd", 3: "rd"}[last] ?? "th")}`;
+  return `${number}${teen ? "th" : (["th", "st", "nd", "rd"][last] ?? "th")}`;
 }

@@ -7,6 +7,7 @@ import {labelOf} from "../basis/numbers.js";
 import {meanOf} from "../basis/statistics.js";
 import {columnOptions} from "../shell/controls.js";
 
+/** @type {FigureSpec} */
 export const CURVES = {
   id: "curves", title: "Along the transformations", wide: true,
   read: "From easy to hard: how the value changes with the strength of the transformation. A flat line bears it "
@@ -26,10 +27,11 @@ export const CURVES = {
     const top = rows.slice(0, Number(option("top")));
     const columns = narrow ? 1 : [1, 1, 2, 3, 2][entry.curves.length] ?? 3;
     const lines = Math.ceil(entry.curves.length / columns);
+    /** @type {Layout} */
     const layout = {annotations: [], hovermode: "closest", margin: {t: 30},
       legend: {y: 1 + 40 / (lines * 230), yanchor: "bottom"}};
     const data = entry.curves.flatMap((curve, i) => {
-      placeCurve(layout, entry, curve, i, {columns, lines});
+      placeCurve(layout, curve, i, {columns, lines});
       return top.map((a, line) => curveTrace(entry, curve, column, a, {i, line, theme, zero: option("failed") === "zero"}));
     });
     return {data, layout, height: lines * 230 + 50 + (narrow ? 16 * top.length : 16),
@@ -37,21 +39,25 @@ export const CURVES = {
   },
 };
 
-/* Means where a curve has several pairs at one place. */
+/** Means where a curve has several pairs at one place.
+ * @param {Entry} entry @param {Curve} curve @param {string} column @param {number} a @param {boolean} zero */
 function curvePoints(entry, curve, column, a, zero) {
   const values = pairValues(entry, column, a);
+  /** @type {Map<number, number[]>} */
   const at = new Map();
   curve.pairs.forEach((pair, i) => {
-    if (!at.has(curve.x[i])) at.set(curve.x[i], []);
-    const value = values[pair];
-    at.get(curve.x[i]).push(zero && !Number.isFinite(value) ? 0 : value);
+    const value = zero && !Number.isFinite(values[pair]) ? 0 : values[pair];
+    at.set(curve.x[i], [...(at.get(curve.x[i]) ?? []), value]);
   });
-  const x = [...at.keys()].sort((p, q) => p - q);
-  return {x, y: x.map(place => meanOf(at.get(place)))};
+  const places = [...at].sort(([p], [q]) => p - q);
+  return {x: places.map(([place]) => place), y: places.map(([, found]) => meanOf(found))};
 }
 
+/** @param {Entry} entry @param {Curve} curve @param {string} column @param {number} a
+ * @param {{i: number, line: number, theme: Theme, zero: boolean}} place  `i` of the panel, `line` of the combination.
+ * @returns {Trace} */
 function curveTrace(entry, curve, column, a, {i, line, theme, zero}) {
-  const {color, symbol} = seriesStyle(theme, line);
+  const {color} = seriesStyle(theme, line);
   const name = safe(entry.combinations[a]);
   return {
     type: "scatter", mode: "lines+markers", name, legendgroup: name, showlegend: i === 0,
@@ -62,7 +68,8 @@ function curveTrace(entry, curve, column, a, {i, line, theme, zero}) {
   };
 }
 
-function placeCurve(layout, entry, curve, i, {columns, lines}) {
+/** @param {Layout} layout @param {Curve} curve @param {number} i @param {{columns: number, lines: number}} grid */
+function placeCurve(layout, curve, i, {columns, lines}) {
   const [line, place] = [Math.floor(i / columns), i % columns];
   const gap = 0.06;
   const wide = (1 - gap * (columns - 1)) / columns;

@@ -8,6 +8,9 @@ import {columnOptions, scaleControl, topControl} from "../shell/controls.js";
 
 /* The first columns of these that an entry has, by pair. */
 const QUALITY_COLUMNS = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+/** @typedef {{x: number[], y: string[], ids: string[]}} Points */
+
+/** @type {FigureSpec} */
 export const DISTRIBUTIONS = {
   id: "spread", title: "From pair to pair", wide: true,
   read: "A dot is one image pair; the shape shows where most of them lie, its line the median. A wide one is "
@@ -41,15 +44,18 @@ export const DISTRIBUTIONS = {
   },
 };
 
+/** @param {FigureContext} context @param {string} column @param {string} order */
 function orderedBy({entry, shown: rows}, column, order) {
   if (order === "score") return rows;
   const medians = mediansOf(entry, column);
   const sign = entry.columns[column].better === "lower" ? 1 : -1;
-  return rows.filter(a => isKnown(medians[a])).sort((a, b) => sign * (medians[a] - medians[b]));
+  return rows.filter(a => isKnown(medians[a])).sort((a, b) => sign * (Number(medians[a]) - Number(medians[b])));
 }
 
+/** @param {Entry} entry @param {string} column @param {number[]} rows @param {boolean} positive @returns {Points} */
 function pointsOfPairs(entry, column, rows, positive) {
-  const [x, y, ids] = [[], [], []];
+  /** @type {Points} */
+  const {x, y, ids} = {x: [], y: [], ids: []};
   for (const a of rows) {
     pairValues(entry, column, a).forEach((value, pair) => {
       if (!Number.isFinite(value) || (positive && value <= 0)) return;
@@ -61,16 +67,18 @@ function pointsOfPairs(entry, column, rows, positive) {
   return {x, y, ids};
 }
 
-/* One trace for all rows, but for violins: within a trace Plotly gives them different widths. */
+/** One trace for all rows, but for violins: within a trace Plotly gives them different widths.
+ * @param {Points} points @param {string} kind @param {string} name @param {Colours} colours @returns {Trace[]} */
 function spreadTraces(points, kind, name, colours) {
   if (kind !== "violin") return [spreadTrace(points, kind, name, colours)];
   return [...new Set(points.y)].map(row => {
     const own = points.y.map((_, i) => i).filter(i => points.y[i] === row);
-    const [x, y, ids] = [points.x, points.y, points.ids].map(values => own.map(i => values[i]));
-    return {...spreadTrace({x, y, ids}, kind, name, colours), scalegroup: row};
+    const part = {x: own.map(i => points.x[i]), y: own.map(i => points.y[i]), ids: own.map(i => points.ids[i])};
+    return {...spreadTrace(part, kind, name, colours), scalegroup: row};
   });
 }
 
+/** @param {Points} points @param {string} kind @param {string} name @param {Colours} colours @returns {Trace} */
 function spreadTrace({x, y, ids}, kind, name, colours) {
   const color = colours.series[0];
   const marker = {color, size: 4, opacity: 0.65};
@@ -85,8 +93,9 @@ function spreadTrace({x, y, ids}, kind, name, colours) {
     line: {color: hidden ? "rgba(0,0,0,0)" : color, width: 1}, fillcolor: hidden ? "rgba(0,0,0,0)" : `${color}26`};
 }
 
+/** @param {Entry} entry @param {number[]} rows */
 function failuresNote(entry, rows) {
-  const failed = rows.filter(a => isKnown(entry.score.success_rate[a]) && entry.score.success_rate[a] < 1);
+  const failed = rows.filter(a => (entry.score.success_rate[a] ?? 1) < 1);
   if (!failed.length) return "None of these failed on any pair.";
   const told = failed.slice(0, 6).map(a => `${entry.combinations[a]} ${percent(entry.score.success_rate[a])}`);
   const more = failed.length > 6 ? ` and ${failed.length - 6} more` : "";

@@ -2,27 +2,32 @@
 
 import {firstColumn, meansWithFailures} from "../basis/entries.js";
 import {isGroundTruth, isKnown, labelOf} from "../basis/numbers.js";
-import {spearman} from "../basis/statistics.js";
+import {spearman, valuesAt} from "../basis/statistics.js";
 import {scatterDraw} from "./scatter.js";
 import {colourControl, columnOptions} from "../shell/controls.js";
 import {matrixFigure} from "../shell/matrix.js";
 
+/** @param {string} name */
 function quantitiesOnly(name) {
   return !/seconds/.test(name);
 }
 
+/** @param {Entry} entry */
 function truthColumns(entry) {
   return Object.keys(entry.columns).filter(isGroundTruth);
 }
 
+/** @param {Entry} entry */
 function inlierColumns(entry) {
   return Object.keys(entry.columns).filter(name => !isGroundTruth(name) && quantitiesOnly(name));
 }
 
+/** @param {Entry} entry */
 function hasTruth(entry) {
   return truthColumns(entry).length ? true : "There is no ground truth for these images.";
 }
 
+/** @type {FigureSpec} */
 export const TRUTH = {
   id: "truth", title: "Ground truth against inliers",
   read: "Across: what can be measured without ground truth. Up: what is true. On the dotted line both say the same; "
@@ -39,18 +44,21 @@ export const TRUTH = {
     context.option("x"), context.option("y"), {log: false, band: sameLine, measure: measureWithFailures}),
 };
 
+/** @param {Entry} entry @param {string} key @returns {Measure} */
 function measureWithFailures(entry, key) {
   return {key, label: labelOf(key), better: entry.columns[key].better, values: meansWithFailures(entry, key)};
 }
 
-/* Only where both are shares. */
+/** Only where both are shares.
+ * @type {import("./scatter.js").Band} */
 function sameLine({colours}, drawn, x, y) {
-  const largest = Math.max(...drawn.flatMap(a => [x.values[a], y.values[a]]));
+  const largest = Math.max(...valuesAt(x.values, drawn), ...valuesAt(y.values, drawn));
   if (largest > 1) return [];
   return [{type: "scatter", mode: "lines", name: "not in the table", showlegend: false, x: [0, 1], y: [0, 1],
     hoverinfo: "skip", line: {color: colours.line, width: 1, dash: "dot"}}];
 }
 
+/** @type {FigureSpec} */
 export const TRUTH_MATRIX = {
   id: "truthmatrix", title: "What tells the truth",
   read: "Spearman’s correlation over the combinations that pass the filter: near 1, a measure that needs no ground truth "
@@ -64,8 +72,9 @@ export const TRUTH_MATRIX = {
   },
 };
 
+/** @param {Entry} entry @param {number[]} rows @param {string} first @param {string} second */
 function correlationOfMeans(entry, rows, first, second) {
   const [x, y] = [meansWithFailures(entry, first), meansWithFailures(entry, second)];
   const both = rows.filter(a => isKnown(x[a]) && isKnown(y[a]));
-  return spearman(both.map(a => x[a]), both.map(a => y[a]));
+  return spearman(valuesAt(x, both), valuesAt(y, both));
 }

@@ -1,39 +1,49 @@
 /* Two measures against each other: means of combinations, or the density of all pairs. */
 
 import {SCALE} from "../basis/colours.js";
-import {hasColumn, meansOf, measureOf, pairValues} from "../basis/entries.js";
+import {hasColumn, meansOf, measureNamed, pairValues} from "../basis/entries.js";
 import {counted, fixed, isKnown} from "../basis/numbers.js";
-import {boundsOf, spanOf, spearman} from "../basis/statistics.js";
+import {boundsOf, spanOf, spearman, valuesAt} from "../basis/statistics.js";
 import {axisLabel, logAxis} from "../shell/axes.js";
 import {colourControl} from "../shell/controls.js";
 import {pointsByMethod, scatterFrame} from "../shell/points.js";
 
-export function scatterDraw(context, xName, yName, {log, band, measure = measureOf}) {
+/** Traces behind the points.
+ * @typedef {(context: FigureContext, drawn: number[], x: Measure, y: Measure) => Trace[]} Band */
+
+/** @param {FigureContext} context @param {string} xName @param {string} yName
+ * @param {{log: boolean, band?: Band, measure?: (entry: Entry, name: string) => Measure}} style @returns {Drawn} */
+export function scatterDraw(context, xName, yName, {log, band, measure = measureNamed}) {
   const {entry, option, theme, narrow, shown: rows} = context;
   const each = option("points") === "pairs";
-  const [x, y] = [xName, yName].map(name => (each ? null : measure(entry, name)));
-  const axis = name => ({title: axisLabel(entry, name), tickangle: 0, nticks: narrow ? 5 : 8, ...(log ? logAxis(rows.flatMap(a =>
-    (each ? Array.from(pairValues(entry, name, a)) : [meansOf(entry, name)[a]]))) : {})});
+  const valuesOf = (/** @type {string} */ name) => (each ? rows.flatMap(a => Array.from(pairValues(entry, name, a)))
+    : valuesAt(meansOf(entry, name), rows));
+  const axis = (/** @type {string} */ name) => ({title: axisLabel(entry, name), tickangle: 0, nticks: narrow ? 5 : 8,
+    ...(log ? logAxis(valuesOf(name)) : {})});
   const axes = {xaxis: axis(xName), yaxis: axis(yName)};
   const height = narrow ? 420 : 460;
   if (each) return densityOfPairs(context, xName, yName, log, axes, height);
-  const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a])
-    && (!log || (x.values[a] > 0 && y.values[a] > 0)));
+  const [x, y] = [measure(entry, xName), measure(entry, yName)];
+  const fits = (/** @type {Value} */ value) => isKnown(value) && (!log || value > 0);
+  const drawn = rows.filter(a => fits(x.values[a]) && fits(y.values[a]));
   if (!drawn.length) return {empty: "None of these combinations has both values."};
   return {
     data: [...(band ? band(context, drawn, x, y) : []), ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
     height,
     layout: scatterFrame(axes.xaxis, axes.yaxis, narrow),
     note: `Spearman’s correlation over ${counted(drawn.length, "combination")}: `
-      + `${fixed(spearman(drawn.map(a => x.values[a]), drawn.map(a => y.values[a])), 2)}.`,
+      + `${fixed(spearman(valuesAt(x.values, drawn), valuesAt(y.values, drawn)), 2)}.`,
   };
 }
 
 const BINS = 60;
 
-/* All pairs of all combinations as counts on a grid: tens of thousands of dots would hide each other. */
+/** All pairs of all combinations as counts on a grid: tens of thousands of dots would hide each other.
+ * @param {FigureContext} context @param {string} xName @param {string} yName @param {boolean} log
+ * @param {{xaxis: Axis, yaxis: Axis}} axes @param {number} height @returns {Drawn} */
 function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, height) {
-  const scale = log ? Math.log10 : value => value;
+  const scale = log ? Math.log10 : Number;
+  /** @type {number[][]} */
   const points = [];
   for (const a of rows) {
     const [x, y] = [pairValues(entry, xName, a), pairValues(entry, yName, a)];
@@ -50,7 +60,7 @@ function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, h
       Math.floor(BINS * (value - bounds[axis][0]) / (bounds[axis][1] - bounds[axis][0]))));
     counts[j][i] += 1;
   }
-  const centres = axis => Array.from({length: BINS}, (_, i) => {
+  const centres = (/** @type {number} */ axis) => Array.from({length: BINS}, (_, i) => {
     const value = bounds[axis][0] + (i + 0.5) * (bounds[axis][1] - bounds[axis][0]) / BINS;
     return log ? 10 ** value : value;
   });
@@ -63,23 +73,30 @@ function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, h
   };
 }
 
+/** @type {ControlSpec} */
 const POINTS = {name: "points", label: "Points", fallback: () => "means",
   options: () => [{key: "means", label: "means of combinations"}, {key: "pairs", label: "density of all pairs"}]};
 
+/** @type {FigureSpec} */
 export const PRECISION_RECALL = {
   id: "pr", title: "Precision against recall",
   read: "Up: the share of the matches that are right. Across: the share of the keypoints that find one. Top right "
     + "is best.",
   controls: [colourControl("descriptor"), POINTS],
   available: entry => (precisionRecall(entry) ? true : "Precision and recall were not measured."),
-  draw: context => scatterDraw(context, ...precisionRecall(context.entry), {log: false}),
+  draw(context) {
+    const [x, y] = precisionRecall(context.entry) ?? ["recall", "precision"];
+    return scatterDraw(context, x, y, {log: false});
+  },
 };
 
+/** @param {Entry} entry */
 function precisionRecall(entry) {
   return [["recall_beyond_chance", "precision_beyond_chance"], ["recall", "precision"]]
     .find(pair => pair.every(name => hasColumn(entry, name))) ?? null;
 }
 
+/** @type {FigureSpec} */
 export const INLIERS_MATCHES = {
   id: "im", title: "Inliers against matches",
   read: "Many matches are worth little if few are right: on the upper line all of them are inliers, on the lower "
@@ -89,8 +106,9 @@ export const INLIERS_MATCHES = {
   draw: context => scatterDraw(context, "matches", "inliers", {log: true, band: shareLines}),
 };
 
+/** @type {Band} */
 function shareLines({colours}, drawn, x) {
-  const [low, high] = boundsOf(drawn.map(a => x.values[a]));
+  const [low, high] = boundsOf(valuesAt(x.values, drawn));
   return [1, 0.1].map(share => ({type: "scatter", mode: "lines", name: "not in the table", showlegend: false,
     x: [low, high], y: [share * low, share * high], hoverinfo: "skip", line: {color: colours.line, width: 1, dash: "dot"}}));
 }

@@ -6,6 +6,7 @@ import {TRUTH, TRUTH_MATRIX} from "./ground-truth.js";
 import {INLIERS_MATCHES, PRECISION_RECALL} from "./scatter.js";
 import {addFigure} from "../shell/figure.js";
 
+/** @type {SectionSpec} */
 export const QUALITY_SECTION = {
   id: "quality",
   title: "Quality",

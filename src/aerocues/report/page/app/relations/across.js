@@ -12,26 +12,24 @@ import {lowEnd, matrixFigure} from "../shell/matrix.js";
 
 const NO_COMPARISON = "There is one ranking only; give several results folders to compare them.";
 
+/** @type {FigureSpec} */
 export const RANKINGS_MATRIX = {
   id: "rankings", title: "Agreement of the rankings", ignoresFilter: true,
   read: "Rank correlation of every two data sets or machines over the combinations they share: near 1, what is best on one is best on the other.",
   controls: [{name: "of", label: "By", fallback: () => "spearman", options: () => [
     {key: "spearman", label: "Spearman"}, {key: "kendall", label: "Kendall’s tau"}]}],
-  available: () => (payload.comparison ? true : NO_COMPARISON),
   draw({option, theme, narrow}) {
+    if (!payload.comparison) return {empty: NO_COMPARISON};
     const {names: labels, shared} = payload.comparison;
-    const z = payload.comparison[option("of")];
+    const z = payload.comparison[option("of") === "kendall" ? "kendall" : "spearman"];
     const figure = matrixFigure({x: labels, y: labels, z, theme, narrow, what: option("of"), low: lowEnd(z)});
     const numbers = shared.flatMap((row, i) => row.filter((_, j) => j > i));
-    const [low, high] = boundsOfCounts(numbers);
+    const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
     return {...figure, note: `Over ${low === high ? low : `${low} to ${high}`} shared combinations.`};
   },
 };
 
-function boundsOfCounts(numbers) {
-  return numbers.length ? [Math.min(...numbers), Math.max(...numbers)] : [0, 0];
-}
-
+/** @type {FigureSpec} */
 export const SLOPES = {
   id: "slopes", title: "Ranks from data set to data set", tall: true,
   read: "A line is a combination, its height the rank on each data set, 1 at the top. Flat lines hold everywhere; the best by mean score are shown.",
@@ -39,10 +37,10 @@ export const SLOPES = {
     options: () => [7, 10, 14].map(size => ({key: String(size), label: `most versatile ${size}`}))},
   scaleControl("log")],
   acrossEntries: true,
-  available: () => (payload.comparison ? true : NO_COMPARISON),
   draw(context) {
     const {option, theme, narrow} = context;
-    const top = versatile().slice(0, Number(option("top")));
+    if (!payload.comparison) return {empty: NO_COMPARISON};
+    const top = versatile(payload.comparison).slice(0, Number(option("top")));
     if (!top.length) return {empty: "No combination passes the filter."};
     const labels = payload.comparison.names.map(name => safe(name).replace(" (", "<br>("));
     const data = top.map((row, i) => {
@@ -60,18 +58,20 @@ export const SLOPES = {
   },
 };
 
-/* Rows of the comparison that pass the filter, in some entry at least. */
-function versatile() {
+/** Rows of the comparison that pass the filter, in some entry at least.
+ * @param {Comparison} comparison */
+function versatile(comparison) {
   const passed = new Set(entries.flatMap(entry => shownIn(entry).map(a => entry.combinations[a])));
-  return payload.comparison.versatility.filter(row => passed.has(row.alternative));
+  return comparison.versatility.filter(row => passed.has(row.alternative));
 }
 
 const VERSATILE_ROWS = 20;
 
 export function versatilityTable() {
   if (!payload.comparison) return [];
-  const rows = versatile();
+  const rows = versatile(payload.comparison);
   const labels = payload.comparison.names;
+  /** @type {PlainColumn<Versatility>[]} */
   const columns = [
     {label: "Combination", text: row => row.alternative},
     {label: "Mean CUES", number: true, text: row => fixed(row.mean)},
@@ -80,7 +80,7 @@ export function versatilityTable() {
     {label: "Mean rank", number: true, text: row => shown(row.mean_rank)},
     {label: "Worst rank", number: true, text: row => shown(row.worst_rank)},
     ...labels.map((label, i) => ({label, number: true, title: "CUES and rank",
-      text: row => (isKnown(row.scores[i]) ? `${fixed(row.scores[i])} (${shown(row.ranks[i])})` : NONE)})),
+      text: (/** @type {Versatility} */ row) => (isKnown(row.scores[i]) ? `${fixed(row.scores[i])} (${shown(row.ranks[i])})` : NONE)})),
   ];
   return [make("h3", {}, "Versatility"),
     make("p", {class: "read"}, "Who is good everywhere: the best mean score first; the spread is the largest minus the smallest. Beside a score stands its rank."),

@@ -3,16 +3,14 @@
 import {safe} from "../basis/elements.js";
 import {counted, shown} from "../basis/numbers.js";
 
+/** @type {FigureSpec} */
 export const CRITICAL = {
   id: "critical", title: "Critical difference", ignoresFilter: true,
   read: "Mean ranks of the best over the pairs (or scenes), 1 at the left: those under one bar cannot be told apart by Nemenyi’s test. "
     + "This asks each pair alone, so the order can differ from that by CUES.",
-  available: entry => {
-    const found = entry.validation?.critical_difference;
-    return found?.alternatives ? true : (found?.unavailable ?? "There is nothing to test.");
-  },
   draw({entry, colours, narrow}) {
     const found = entry.validation.critical_difference;
+    if (found.unavailable !== undefined) return {empty: found.unavailable};
     const rows = found.alternatives.map(safe);
     const ranks = found.mean_ranks;
     const bars = found.groups.map(([first, last], i) => ({
@@ -38,6 +36,7 @@ export const CRITICAL = {
   },
 };
 
+/** @param {number[]} ranks */
 function middleOf(ranks) {
   return (ranks[0] + ranks[ranks.length - 1]) / 2;
 }

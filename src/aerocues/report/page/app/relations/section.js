@@ -1,6 +1,6 @@
 /* Section 5: how far the ranking can be trusted, and how it carries over. */
 
-import {figuresList, make} from "../basis/elements.js";
+import {elementOf, figuresList, make} from "../basis/elements.js";
 import {fixed, percent, shown} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry} from "../basis/state.js";
@@ -9,6 +9,7 @@ import {CRITICAL} from "./critical-difference.js";
 import {AGREEMENT, CRITERIA_MATRIX, SENSITIVITY} from "./sensitivity.js";
 import {addFigure} from "../shell/figure.js";
 
+/** @type {SectionSpec} */
 export const RELATIONS_SECTION = {
   id: "relations",
   title: "Relations",
@@ -18,16 +19,17 @@ export const RELATIONS_SECTION = {
     for (const spec of [CRITERIA_MATRIX, SENSITIVITY, AGREEMENT, CRITICAL, SLOPES, RANKINGS_MATRIX]) addFigure(body, spec);
     body.append(make("div", {id: "reversal", class: "figure"}), make("div", {id: "versatility", class: "figure wide"}));
   },
-  update(body, changed) {
+  update(_, changed) {
     if ([...changed].every(key => key.includes(".") || key === "theme")) return;
-    body.querySelector("#reversal").replaceChildren(...reversalWords(currentEntry()));
-    body.querySelector("#versatility").replaceChildren(...versatilityTable());
-    body.querySelector("#versatility").hidden = !payload.comparison;
+    elementOf("reversal").replaceChildren(...reversalWords(currentEntry()));
+    elementOf("versatility").replaceChildren(...versatilityTable());
+    elementOf("versatility").hidden = !payload.comparison;
   },
 };
 
+/** @param {Entry} entry */
 function reversalWords(entry) {
-  const found = entry.validation?.rank_reversal;
+  const found = entry.validation.rank_reversal;
   const head = [make("h3", {}, "When some are left out"),
     make("p", {class: "read"}, "Scores belong to what is compared: a part of the combinations is left out at random, and the rest is ranked again.")];
   if (!found) return [...head, make("p", {class: "nothing"}, "A single combination cannot be ranked again.")];

@@ -3,11 +3,12 @@
 import {fixed, labelOf, listed} from "../basis/numbers.js";
 import {lowEnd, lowestOf, matrixFigure} from "../shell/matrix.js";
 
+/** @type {FigureSpec} */
 export const CRITERIA_MATRIX = {
   id: "criteria", title: "Correlation of the criteria", ignoresFilter: true,
   read: "Pearson’s, over all combinations, of the normalised values (more is better in all of them): two criteria near 1 say the same and count double; "
     + "near -1, one is paid for with the other.",
-  available: entry => (entry.validation?.criteria_correlation ? true : "There is nothing to correlate."),
+  available: entry => (entry.validation.criteria_correlation.names.length ? true : "There is nothing to correlate."),
   draw({entry, theme, narrow}) {
     const {names: criteria, correlation} = entry.validation.criteria_correlation;
     const labels = criteria.map(labelOf);
@@ -15,46 +16,49 @@ export const CRITERIA_MATRIX = {
   },
 };
 
+/** @type {{key: "criterion_left_out" | "alpha" | "aggregation", label: string}[]} */
 const VARIANTS = [
   {key: "criterion_left_out", label: "each criterion left out"},
   {key: "alpha", label: "alpha"},
   {key: "aggregation", label: "aggregation of the weights"},
 ];
 
+/** @type {FigureSpec} */
 export const SENSITIVITY = {
   id: "sensitivity", title: "Sensitivity to choices", ignoresFilter: true,
   read: "Spearman’s correlation of the whole ranking under other choices: near 1, the choice hardly matters.",
   controls: [{name: "of", label: "Choice of", fallback: () => "criterion_left_out",
-    options: entry => VARIANTS.filter(({key}) => entry.validation?.[key]?.names)}],
-  available: entry => (VARIANTS.some(({key}) => entry.validation?.[key]?.names) ? true : "There is nothing to vary."),
+    options: () => VARIANTS}],
   draw({entry, option, theme, narrow}) {
-    return variantsFigure(entry, entry.validation[option("of")], theme, narrow);
+    const choice = VARIANTS.find(({key}) => key === option("of")) ?? VARIANTS[0];
+    return variantsFigure(entry, entry.validation[choice.key], theme, narrow);
   },
 };
 
+/** @type {FigureSpec} */
 export const AGREEMENT = {
   id: "agreement", title: "Other methods of decision", ignoresFilter: true,
   read: "The same values and weights ranked by methods that others use: near 1, the ranking does not hang on CUES.",
-  available: entry => {
-    const found = entry.validation?.agreement;
-    return found?.names ? true : (found?.unavailable ?? "There is nothing to compare.");
-  },
   draw({entry, theme, narrow}) {
-    return variantsFigure(entry, entry.validation.agreement, theme, narrow);
+    const found = entry.validation.agreement;
+    return found.unavailable === undefined ? variantsFigure(entry, found, theme, narrow) : {empty: found.unavailable};
   },
 };
 
+/** @param {Entry} entry @param {Variants} found @param {Theme} theme @param {boolean} narrow @returns {PlotDrawn} */
 function variantsFigure(entry, {names: variants, correlation, best}, theme, narrow) {
   const words = variants.map(variantLabel);
   const figure = matrixFigure({x: words, y: words, z: correlation, theme, narrow, what: "Spearman", low: lowEnd(correlation)});
-  const winners = Map.groupBy ? Map.groupBy(variants, (_, i) => best?.[i]) : new Map();
-  const others = [...winners].filter(([name]) => name && name !== entry.combinations[entry.score.best]);
+  const winner = entry.combinations[entry.score.best];
+  const others = [...new Set(best)].filter(name => name !== winner);
+  const choices = (/** @type {string} */ name) => listed(words.filter((_, i) => best[i] === name));
   const note = others.length
-    ? `Another one comes first: ${others.map(([name, found]) => `${listed(found.map(variantLabel))}: ${name}`).join("; ")}.`
-    : `${entry.combinations[entry.score.best] ?? "The same one"} is the best in all of them. Lowest correlation: ${fixed(lowestOf(correlation), 2)}.`;
+    ? `Another one comes first: ${others.map(name => `${choices(name)}: ${name}`).join("; ")}.`
+    : `${winner} is the best in all of them. Lowest correlation: ${fixed(lowestOf(correlation), 2)}.`;
   return {...figure, note};
 }
 
+/** @param {string} name */
 function variantLabel(name) {
   return name.startsWith("without ") ? `without ${labelOf(name.slice(8))}` : name;
 }

@@ -4,18 +4,19 @@ import {safe} from "../basis/elements.js";
 import {counted, fixed} from "../basis/numbers.js";
 import {categoryAxis, heightOfRows} from "../shell/axes.js";
 
+/** @type {FigureSpec} */
 export const COMPONENTS = {
   id: "components", title: "Scores by method", ignoresFilter: true,
   read: "The bar reaches from the mean score of all combinations with a method to the best of them: a long bar "
     + "means that much depends on the company. All combinations count, whatever the filter.",
-  controls: [{name: "of", label: "By", options: entry => Object.keys(entry.validation?.hierarchies ?? {})
+  controls: [{name: "of", label: "By", options: entry => Object.keys(entry.validation.hierarchies)
     .map(key => ({key, label: key.replaceAll("_", " ").replaceAll("-", " and ")}))}],
-  available: entry => (Object.keys(entry.validation?.hierarchies ?? {}).length ? true : "There are no scores by method."),
+  available: entry => (Object.keys(entry.validation.hierarchies).length ? true : "There are no scores by method."),
   draw({entry, colours, option}) {
     const rows = entry.validation.hierarchies[option("of")].slice(0, 40);
     const labels = rows.map(row => safe(row.name));
     const hover = rows.map(row => `<b>${safe(row.name)}</b><br>mean ${fixed(row.mean)} ± ${fixed(row.standard_deviation)}`
-      + `<br>best ${fixed(row.max)}: ${safe(row.best ?? "")}<br>${counted(row.evaluations ?? 0, "measurement")}`);
+      + `<br>best ${fixed(row.max)}: ${safe(row.best)}<br>${counted(row.evaluations, "measurement")}`);
     const common = {y: labels, hovertext: hover, hoverinfo: "text"};
     return {
       data: [

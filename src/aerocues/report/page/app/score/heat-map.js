@@ -2,13 +2,19 @@
 
 import {CIVIDIS, isBrightOnScale, onCividis} from "../basis/colours.js";
 import {makeSvg, withTips} from "../basis/elements.js";
-import {CODES, measureOf} from "../basis/entries.js";
+import {CODES, measureNamed} from "../basis/entries.js";
 import {isKnown, percent, valueText} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {spanOf} from "../basis/statistics.js";
 import {measureOptions} from "../shell/controls.js";
 import {FONT, widestText} from "../shell/figure.js";
 
+/** @typedef {{measure: Measure, panels: [norm: string, matcher: string][], bounds: Span, detectors: string[],
+ *   descriptors: string[], columns: number, at: Map<string, number>}} Heat  `at` has the positions of combinations. */
+/** @typedef {ReturnType<typeof heatSize>} HeatSize */
+/** @typedef {{x: number, y: number, width: number, height: number}} Box */
+
+/** @type {FigureSpec} */
 export const HEAT_MAP = {
   id: "heat", title: "Detector and descriptor", wide: true,
   read: "A panel for each norm and matcher; brighter is better. Hatched cells cannot run or mean nothing (the "
@@ -16,10 +22,11 @@ export const HEAT_MAP = {
   controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
   draw(context) {
     const {entry, narrow, shown: rows, width} = context;
-    const measure = measureOf(entry, context.option("value"));
+    const measure = measureNamed(entry, context.option("value"));
     const known = rows.map(a => measure.values[a]).filter(isKnown);
     if (!known.length) return {empty: `None of these combinations has a value of ${measure.label}.`};
     const panels = heatPanels(entry, rows);
+    /** @type {Heat} */
     const heat = {
       measure, panels, bounds: spanOf(known), detectors: inOrder(entry.detector, rows),
       descriptors: inOrder(entry.descriptor, rows), columns: narrow || panels.length === 1 ? 1 : 2,
@@ -31,11 +38,13 @@ export const HEAT_MAP = {
   },
 };
 
+/** @param {string[]} methods @param {number[]} rows */
 function inOrder(methods, rows) {
   const present = new Set(rows.map(a => methods[a]));
   return [...new Set(methods)].filter(name => present.has(name));
 }
 
+/** @param {Entry} entry @param {number[]} rows @returns {[norm: string, matcher: string][]} */
 function heatPanels(entry, rows) {
   const keys = [...new Set(rows.map(a => JSON.stringify([entry.norm[a], entry.matcher[a]])))];
   return keys.map(key => JSON.parse(key)).sort((a, b) => b[0].localeCompare(a[0]) || a[1].localeCompare(b[1]));
@@ -43,7 +52,8 @@ function heatPanels(entry, rows) {
 
 const HEAT_LABEL = 11;
 
-/* Sizes in pixels: of a cell, of the labels and of a panel, which holds its title and both labels. */
+/** Sizes in pixels: of a cell, of the labels and of a panel, which holds its title and both labels.
+ * @param {Heat} heat @param {number} width @param {boolean} narrow */
 function heatSize({detectors, descriptors, panels, columns}, width, narrow) {
   const left = widestText(detectors, HEAT_LABEL) + 8;
   const below = Math.ceil(widestText(descriptors, HEAT_LABEL) * 0.85) + 14;
@@ -55,11 +65,13 @@ function heatSize({detectors, descriptors, panels, columns}, width, narrow) {
     height: top + Math.ceil(panels.length / columns) * panelHeight};
 }
 
+/** @param {Heat} heat @param {number} value */
 function heatShare({measure, bounds: [low, high]}, value) {
   const share = (value - low) / (high - low);
   return measure.better === "lower" ? 1 - share : share;
 }
 
+/** @param {FigureContext} context @param {Heat} heat @param {HeatSize} size */
 function heatDrawing(context, heat, size) {
   const {colours} = context;
   const svg = makeSvg("svg", {class: "main-svg", width: size.width, height: size.height,
@@ -75,7 +87,8 @@ function heatDrawing(context, heat, size) {
   return withTips(svg);
 }
 
-/* The colours with their ends and middle, the better end at the right. */
+/** The colours with their ends and middle, the better end at the right.
+ * @param {Heat} heat @param {HeatSize} size @param {Colours} colours */
 function scaleBar({measure, bounds: [low, high]}, {width}, colours) {
   const wide = Math.min(320, width - 60);
   const left = (width - wide) / 2;
@@ -87,6 +100,7 @@ function scaleBar({measure, bounds: [low, high]}, {width}, colours) {
       valueText(measure.key, value))));
 }
 
+/** @param {FigureContext} context @param {Heat} heat @param {HeatSize} size @param {[string, string]} methods @param {number} i */
 function heatPanel(context, heat, size, [norm, matcher], i) {
   const {detectors, descriptors, columns} = heat;
   const {cell, left, titled} = size;
@@ -104,11 +118,12 @@ function heatPanel(context, heat, size, [norm, matcher], i) {
       {x: left + column * cell.width, y: titled + line * cell.height, ...cell}))));
 }
 
+/** @param {FigureContext} context @param {Heat} heat @param {string} name @param {Box} place */
 function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
   const box = {x: x + 0.5, y: y + 0.5, width: width - 1, height: height - 1};
   const a = heat.at.get(name);
   if (a === undefined) {
-    const reason = Object.hasOwn(payload.incompatible ?? {}, name) ? payload.incompatible[name] : null;
+    const reason = Object.hasOwn(payload.incompatible, name) ? payload.incompatible[name] : null;
     return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\nleft out: ${reason}`}) : [];
   }
   const value = heat.measure.values[a];
@@ -121,13 +136,15 @@ function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
     fill: isBrightOnScale(share) ? "#000000" : "#ffffff", "pointer-events": "none"}, cellText(value))];
 }
 
+/** @param {Entry} entry @param {Measure} measure @param {number} a */
 function heatTip(entry, measure, a) {
   const rank = isKnown(entry.score.rank[a]) ? `\nrank ${entry.score.rank[a]}` : "";
   return `${entry.combinations[a]}\n${measure.label}: ${valueText(measure.key, measure.values[a])}${rank}`
     + `\nsucceeds on ${percent(entry.score.success_rate[a])} of the pairs`;
 }
 
-/* At most four characters. */
+/** At most four characters.
+ * @param {number} value */
 function cellText(value) {
   if (value >= 10000) return `${Math.round(value / 1000)}k`;
   if (value >= 1000) return `${(value / 1000).toFixed(1)}k`;
@@ -135,14 +152,16 @@ function cellText(value) {
   return value >= 1 ? value.toFixed(1) : value.toFixed(2).replace(/^0/, "");
 }
 
+/** @param {FigureContext} context @param {Heat} heat @returns {Table} */
 function heatTable({entry, shown: rows}, {measure}) {
   return [[...CODES, measure.key], rows.filter(a => isKnown(measure.values[a]))
     .map(a => [...CODES.map(code => entry[code][a]), measure.values[a]])];
 }
 
+/** @param {Entry} entry @param {number[]} rows @param {Measure} measure */
 function heatSummary(entry, rows, measure) {
   const known = rows.filter(a => isKnown(measure.values[a]));
-  const sign = measure.better === "lower" ? -1 : 1;
-  const best = known.reduce((a, b) => (sign * measure.values[b] > sign * measure.values[a] ? b : a));
+  const good = (/** @type {number} */ a) => (measure.better === "lower" ? -1 : 1) * Number(measure.values[a]);
+  const best = known.reduce((a, b) => (good(b) > good(a) ? b : a));
   return `Best by ${measure.label}: ${entry.combinations[best]}, ${valueText(measure.key, measure.values[best])}`;
 }

@@ -1,7 +1,7 @@
 /* Speed against quality, or any two measures, with the front of what nothing beats in both. */
 
 import {safe} from "../basis/elements.js";
-import {measureOf} from "../basis/entries.js";
+import {measureNamed, measureOf} from "../basis/entries.js";
 import {duration, isKnown, shown} from "../basis/numbers.js";
 import {spanOf} from "../basis/statistics.js";
 import {logAxis} from "../shell/axes.js";
@@ -11,24 +11,26 @@ import {isSound, pointsByMethod, scatterFrame} from "../shell/points.js";
 const SPEEDS = ["seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
 const QUALITIES = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
 
+/** @param {Entry} entry @param {string[]} keys */
 function firstMeasure(entry, keys) {
   return keys.find(key => measureOf(entry, key)) ?? "score";
 }
 
+/** @type {FigureSpec} */
 export const PARETO = {
   id: "pareto", title: "Speed against quality", wide: true,
   read: "A point is a combination, by its means over the pairs that did not fail. Points on the line are beaten by none in both "
     + "measures at once. Hollow ones failed too often to count there.",
   controls: [
     {name: "x", label: "Across", options: measureOptions,
-      fallback: entry => entry.validation?.pareto?.criteria?.[0] ?? firstMeasure(entry, SPEEDS)},
+      fallback: entry => entry.validation.pareto.criteria[0] ?? firstMeasure(entry, SPEEDS)},
     {name: "y", label: "Up", options: measureOptions,
-      fallback: entry => entry.validation?.pareto?.criteria?.[1] ?? firstMeasure(entry, QUALITIES)},
+      fallback: entry => entry.validation.pareto.criteria[1] ?? firstMeasure(entry, QUALITIES)},
     colourControl(),
   ],
   draw(context) {
     const {entry, shown: rows, option, narrow, colours, theme} = context;
-    const [x, y] = [measureOf(entry, option("x")), measureOf(entry, option("y"))];
+    const [x, y] = [measureNamed(entry, option("x")), measureNamed(entry, option("y"))];
     const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a]));
     if (!drawn.length) return {empty: "None of these combinations has both values."};
     const sound = drawn.filter(a => isSound(entry, a));
@@ -47,7 +49,8 @@ export const PARETO = {
   },
 };
 
-/* Times and counts that reach over more than a factor of 10 are better seen on a logarithmic axis. */
+/** Times and counts that reach over more than a factor of 10 are better seen on a logarithmic axis.
+ * @param {Measure} measure @param {number[]} rows @returns {Axis} */
 function measureAxis(measure, rows) {
   const values = rows.map(a => measure.values[a]).filter(isKnown);
   const [low, high] = [Math.min(...values), Math.max(...values)];
@@ -58,13 +61,15 @@ function measureAxis(measure, rows) {
   return {title, ...logAxis(values, timed ? duration : shown)};
 }
 
+/** @param {string} name */
 function isCount(name) {
   return /^(inliers|excess_inliers|matches|keypoints_\d|points_3d)$/.test(name);
 }
 
+/** @param {number[]} rows @param {Measure} x @param {Measure} y */
 function paretoFront(rows, x, y) {
-  const sign = measure => (measure.better === "lower" ? -1 : 1);
-  const good = (measure, a) => sign(measure) * measure.values[a];
+  /** @type {(measure: Measure, a: number) => number} */
+  const good = (measure, a) => (measure.better === "lower" ? -1 : 1) * Number(measure.values[a]);
   const order = [...rows].sort((a, b) => good(x, b) - good(x, a) || good(y, b) - good(y, a));
   let best = -Infinity;
   return order.filter(a => {
@@ -74,12 +79,16 @@ function paretoFront(rows, x, y) {
   });
 }
 
-/* Names of a few points on the front, so far apart that they do not cover each other. */
+/** Names of a few points on the front, so far apart that they do not cover each other.
+ * @param {FigureContext} context @param {number[]} drawn @param {number[]} front @param {Measure} x @param {Measure} y */
 function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
-  const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10(measure.values[a]) : measure.values[a]);
+  /** @type {(measure: Measure, a: number) => number} */
+  const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number)(Number(measure.values[a]));
   const [spanX, spanY] = [x, y].map(measure => spanOf(drawn.map(a => place(measure, a))));
+  /** @type {(a: number, b: number) => boolean} */
   const near = (a, b) => Math.abs(place(x, a) - place(x, b)) / (spanX[1] - spanX[0]) * width < 170
     && Math.abs(place(y, a) - place(y, b)) / (spanY[1] - spanY[0]) * 400 < 26;
+  /** @type {number[]} */
   const picked = [];
   for (const a of [front[0], front[front.length - 1], ...front]) {
     if (picked.length < (narrow ? 3 : 7) && !picked.some(b => near(a, b))) picked.push(a);

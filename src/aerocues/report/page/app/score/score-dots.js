@@ -6,6 +6,7 @@ import {fixed, isKnown, percent, shown} from "../basis/numbers.js";
 import {categoryAxis, names} from "../shell/axes.js";
 import {topControl} from "../shell/controls.js";
 
+/** @type {FigureSpec} */
 export const SCORE_DOTS = {
   id: "dots", title: "The best, with intervals", tall: true,
   read: "A dot is the score, its bar the 95 % interval over the pairs. Filled: cannot be told from the best; "
@@ -16,6 +17,7 @@ export const SCORE_DOTS = {
     if (!scored.length) return {empty: "None of these combinations has a score."};
     const top = scored.slice(0, Number(option("top")));
     const equal = new Set([entry.score.best, ...entry.score.indistinguishable]);
+    /** @type {[name: string, belongs: (a: number) => boolean, series: number, symbol: string][]} */
     const groups = [
       ["L2, cannot be told from the best", a => equal.has(a) && !isBinary(entry, a), 0, "circle"],
       ["L2, worse", a => !equal.has(a) && !isBinary(entry, a), 0, "circle-open"],
@@ -32,18 +34,20 @@ export const SCORE_DOTS = {
   },
 };
 
+/** @param {Entry} entry @param {number[]} rows @param {string} name @param {string} color @param {string} symbol */
 function dotsTrace(entry, rows, name, color, symbol) {
   const score = entry.score;
-  const reach = (from, to) => rows.map(a => (isKnown(from?.[a]) && isKnown(to?.[a]) ? to[a] - from[a] : 0));
+  /** @type {(from: Value[], to: Value[]) => number[]} */
+  const reach = (from, to) => rows.map(a => Number(to[a] ?? NaN) - Number(from[a] ?? NaN) || 0);
   return {
     type: "scatter", mode: "markers", name, x: rows.map(a => score.score[a]), y: names(entry, rows),
     marker: {color, symbol, size: 9, line: {width: 2, color}},
     error_x: {type: "data", symmetric: false, array: reach(score.score, score.score_high),
       arrayminus: reach(score.score_low, score.score), color, thickness: 1.5, width: 3},
     hovertext: rows.map(a => `<b>${safe(entry.combinations[a])}</b><br>CUES ${fixed(score.score[a])} `
-      + `(${fixed(score.score_low?.[a])} to ${fixed(score.score_high?.[a])})<br>rank ${safe(rankText(score, a))}`
-      + `<br>first in ${safe(percent(score.probability_best?.[a]))} of resamples`
-      + `${isKnown(score.p_value?.[a]) ? `<br>p = ${shown(score.p_value[a], 2)}` : ""}`),
+      + `(${fixed(score.score_low[a])} to ${fixed(score.score_high[a])})<br>rank ${safe(rankText(score, a))}`
+      + `<br>first in ${safe(percent(score.probability_best[a]))} of resamples`
+      + `${isKnown(score.p_value[a]) ? `<br>p = ${shown(score.p_value[a], 2)}` : ""}`),
     hoverinfo: "text",
   };
 }

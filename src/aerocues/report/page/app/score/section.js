@@ -7,6 +7,7 @@ import {SCORE_DOTS} from "./score-dots.js";
 import {WEIGHTS} from "./weights.js";
 import {addFigure} from "../shell/figure.js";
 
+/** @type {SectionSpec} */
 export const SCORE_SECTION = {
   id: "score",
   title: "CUES",

@@ -5,11 +5,12 @@ import {safe} from "../basis/elements.js";
 import {labelOf} from "../basis/numbers.js";
 import {categoryAxis, heightOfRows} from "../shell/axes.js";
 
+/** @type {FigureSpec} */
 export const WEIGHTS = {
   id: "weights", title: "Weights of the criteria", ignoresFilter: true,
   read: "The weights come from the data: a criterion that tells the combinations apart weighs more. Dots are the "
     + "methods of weighting, the bar is their aggregate, which counts.",
-  available: entry => (entry.score.weights?.methods?.length ? true : "There are no weights."),
+  available: entry => (entry.score.weights.methods.length ? true : "There are no weights."),
   draw({entry, colours, theme}) {
     const {methods, values} = entry.score.weights;
     const criteria = entry.score.criteria.map(each => safe(labelOf(each.name)));
@@ -31,6 +32,10 @@ export const WEIGHTS = {
   },
 };
 
+/** @type {Record<string, string>} */
+const WEIGHT_METHODS = {pca: "PCA", critic: "CRITIC", critic_published: "CRITIC, as published"};
+
+/** @param {string} name */
 function methodLabel(name) {
-  return {pca: "PCA", critic: "CRITIC", critic_published: "CRITIC, as published"}[name] ?? name.replaceAll("_", " ");
+  return WEIGHT_METHODS[name] ?? name.replaceAll("_", " ");
 }

@@ -1,9 +1,4 @@
-/* A table with a row a combination: sorted by its headings, with columns to choose and a file to save.
-
-   A table is {id, title, prefix, natural, columns(entry), rows(entry), downFirst(entry, column), read(entry),
-   isMarked(entry, a), context(entry, drawn)}. A column is {key, label, title, value(a), text(a), cell(a, context),
-   number, usual}: `usual` ones are shown at first. `rows` come in the order of the column `natural`. What is
-   sorted and shown stands in the state under `prefix`. */
+/* A table with a row a combination: sorted by its headings, with columns to choose and a file to save. */
 
 import {fileStem, saveCsv} from "../basis/downloads.js";
 import {announce, disclosure, make} from "../basis/elements.js";
@@ -11,8 +6,14 @@ import {counted} from "../basis/numbers.js";
 import {currentEntry, state} from "../basis/state.js";
 
 const ROWS_AT_FIRST = 15;
+/** @type {Span} */
+const WHOLE = [0, 1];
+/** @type {Map<ColumnTableSpec, ColumnTable>} */
+const tables = new Map();
 
+/** @param {HTMLElement} parent @param {ColumnTableSpec} spec */
 export function addColumnTable(parent, spec) {
+  /** @type {ColumnTable} */
   const table = {...spec, element: make("table", {class: "ranking", id: spec.id}),
     chooser: make("div", {class: "chooser"}), more: make("div", {class: "more"}), words: make("p", {class: "read"})};
   parent.append(
@@ -23,9 +24,10 @@ export function addColumnTable(parent, spec) {
         "aria-label": `Save the table “${spec.title}” as CSV`, onclick: () => saveColumnTable(table)}, "CSV"))),
     make("div", {class: "scroll", tabindex: "0", role: "region", "aria-labelledby": `title-${spec.id}`}, table.element),
     table.more);
-  return table;
+  tables.set(spec, table);
 }
 
+/** @param {ColumnTable} table @param {Entry} entry */
 function shownColumns(table, entry) {
   const all = table.columns(entry);
   const wanted = state.get(`${table.prefix}columns`).split(",").filter(Boolean);
@@ -33,12 +35,14 @@ function shownColumns(table, entry) {
   return picked.length ? picked : all.filter(column => column.usual);
 }
 
+/** @param {ColumnTable} table */
 function sortOrder({prefix, natural}) {
   const text = state.get(`${prefix}sort`, natural);
   return text.startsWith("-") ? {key: text.slice(1), down: true} : {key: text, down: false};
 }
 
-/* Rows in the order that was asked for; what has no value comes last. */
+/** Rows in the order that was asked for; what has no value comes last.
+ * @param {ColumnTable} table @param {Entry} entry */
 function sortedRows(table, entry) {
   const {key, down} = sortOrder(table);
   const column = table.columns(entry).find(each => each.key === key);
@@ -46,32 +50,37 @@ function sortedRows(table, entry) {
   if (!column || (key === table.natural && !down)) return rows;
   const known = rows.filter(a => column.value(a) !== null);
   const lacking = rows.filter(a => column.value(a) === null);
+  /** @type {(a: number, b: number) => number} */
   const compare = column.number
-    ? (a, b) => column.value(a) - column.value(b)
+    ? (a, b) => Number(column.value(a)) - Number(column.value(b))
     : (a, b) => compareTexts(String(column.value(a)), String(column.value(b)));
   known.sort((a, b) => (down ? compare(b, a) : compare(a, b)));
   return [...known, ...lacking];
 }
 
+/** @param {string} first @param {string} second */
 function compareTexts(first, second) {
   const [a, b] = [first.toLowerCase(), second.toLowerCase()];
   return a < b ? -1 : Number(a > b);
 }
 
-export function updateColumnTable(table, changed) {
+/** @param {ColumnTableSpec} spec @param {Set<string>} changed */
+export function updateColumnTable(spec, changed) {
+  const table = tables.get(spec);
+  if (!table) return;
   const entry = currentEntry();
   const columns = shownColumns(table, entry);
   const rows = sortedRows(table, entry);
-  const asked = state.get(`${table.prefix}rows`, ROWS_AT_FIRST);
+  const asked = state.get(`${table.prefix}rows`, String(ROWS_AT_FIRST));
   const limit = asked === "all" ? rows.length : Number(asked);
   if (changed.has("entry") || changed.has(`${table.prefix}columns`)) updateChooser(table, entry, columns);
   table.words.textContent = table.read(entry);
   const drawn = rows.slice(0, limit);
-  const context = table.context?.(entry, drawn);
+  const span = table.span?.(entry, drawn) ?? WHOLE;
   table.element.replaceChildren(
     make("thead", {}, make("tr", {}, columns.map(column => headCell(table, column)))),
     make("tbody", {}, drawn.map(a => make("tr", {class: table.isMarked?.(entry, a) ? "equal" : null},
-      rowCells(columns, a, context)))));
+      rowCells(columns, a, span)))));
   if (!rows.length) {
     table.element.append(make("tbody", {}, make("tr", {}, make("td", {colspan: columns.length},
       "No combination passes the filter."))));
@@ -79,6 +88,7 @@ export function updateColumnTable(table, changed) {
   updateMore(table, rows.length, limit);
 }
 
+/** @param {ColumnTable} table @param {Column} column */
 function headCell(table, column) {
   const {key, down} = sortOrder(table);
   const sorted = key === column.key ? (down ? "descending" : "ascending") : null;
@@ -87,26 +97,32 @@ function headCell(table, column) {
     "aria-sort": sorted}, button);
 }
 
-/* First click: the better end first; second: the other. */
+/** First click: the better end first; second: the other.
+ * @param {ColumnTable} table @param {Column} column */
 function sortBy(table, column) {
   const {key, down} = sortOrder(table);
   const next = key === column.key ? !down : table.downFirst(currentEntry(), column);
   state.set({[`${table.prefix}sort`]: column.key === table.natural && !next ? null : `${next ? "-" : ""}${column.key}`});
-  table.element.querySelector(`th[data-key="${CSS.escape(column.key)}"] button`)?.focus();
+  /** @type {HTMLElement | null} */
+  const heading = table.element.querySelector(`th[data-key="${CSS.escape(column.key)}"] button`);
+  heading?.focus();
   announce(`Sorted by ${column.label}, ${next ? "descending" : "ascending"}.`);
 }
 
-/* Cells in the order of the columns; the name of the combination heads the row. */
-function rowCells(columns, a, context) {
+/** Cells in the order of the columns; the name of the combination heads the row.
+ * @param {Column[]} columns @param {number} a @param {Span} span */
+function rowCells(columns, a, span) {
   return columns.map(column => {
-    const content = column.cell?.(a, context) ?? column.text(a);
+    const content = column.cell?.(a, span) ?? column.text(a);
     return column.key === "combination"
       ? make("th", {scope: "row"}, content)
       : make("td", {class: column.number ? "number" : column.kind}, content);
   });
 }
 
+/** @param {ColumnTable} table @param {number} count @param {number} limit */
 function updateMore(table, count, limit) {
+  /** @param {string} label @param {string | null} rows */
   const button = (label, rows) => make("button", {type: "button", class: "quiet",
     onclick: () => state.set({[`${table.prefix}rows`]: rows})}, label);
   table.more.replaceChildren(
@@ -116,16 +132,20 @@ function updateMore(table, count, limit) {
     ...(state.get(`${table.prefix}rows`) ? [button("Show fewer", null)] : []));
 }
 
+/** @param {ColumnTable} table @param {Entry} entry @param {Column[]} columns */
 function updateChooser(table, entry, columns) {
   const picked = new Set(columns.map(column => column.key));
   table.chooser.replaceChildren(
-    ...table.columns(entry).map(column => make("label", {title: column.title},
-      make("input", {type: "checkbox", checked: picked.has(column.key),
-        onchange: event => pickColumn(table, entry, column.key, event.target.checked)}), column.label)),
+    ...table.columns(entry).map(column => {
+      const box = make("input", {type: "checkbox", checked: picked.has(column.key),
+        onchange: () => pickColumn(table, entry, column.key, box.checked)});
+      return make("label", {title: column.title}, box, column.label);
+    }),
     make("button", {type: "button", class: "quiet",
       onclick: () => state.set({[`${table.prefix}columns`]: null})}, "Usual columns"));
 }
 
+/** @param {ColumnTable} table @param {Entry} entry @param {string} key @param {boolean} wanted */
 function pickColumn(table, entry, key, wanted) {
   const picked = new Set(shownColumns(table, entry).map(column => column.key));
   if (wanted) picked.add(key);
@@ -135,6 +155,7 @@ function pickColumn(table, entry, key, wanted) {
   table.chooser.querySelectorAll("input")[columns.indexOf(key)]?.focus();
 }
 
+/** @param {ColumnTable} table */
 function saveColumnTable(table) {
   const entry = currentEntry();
   const columns = table.columns(entry);

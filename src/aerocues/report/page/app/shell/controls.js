@@ -5,17 +5,19 @@ import {CODES, measuresOf} from "../basis/entries.js";
 import {isGroundTruth, labelOf} from "../basis/numbers.js";
 import {currentEntry, state} from "../basis/state.js";
 
-/* The value of a key, or its default where the options do not have it. */
+/** The value of a key, or its default where the options do not have it.
+ * @param {string} key @param {Option[]} options @param {string | null} [fallback] */
 function chosen(key, options, fallback) {
   const value = state.get(key);
   const keys = options.map(option => option.key);
   if (keys.includes(value)) return value;
-  return keys.includes(fallback) ? fallback : keys[0];
+  return fallback && keys.includes(fallback) ? fallback : keys[0];
 }
 
 let controlCount = 0;
 
-/* A control: {name, label, options(entry), fallback(entry)}; its key is `figure.name`. */
+/** A list to choose from.
+ * @param {string} figureId @param {ControlSpec} control @returns {Control} */
 export function selectControl(figureId, control) {
   const key = `${figureId}.${control.name}`;
   controlCount += 1;
@@ -42,7 +44,8 @@ export function selectControl(figureId, control) {
   }};
 }
 
-/* A box to tick: {key, label, shown}; its key is `figure.key`, a class of the same name its colour. */
+/** A box to tick.
+ * @param {string} figureId @param {LayerSpec} layer @returns {Layer} */
 export function layerControl(figureId, layer) {
   const key = `${figureId}.${layer.key}`;
   const box = make("input", {type: "checkbox", "data-layer": layer.key, onchange: () =>
@@ -56,18 +59,20 @@ export function layerControl(figureId, layer) {
   };
 }
 
+/** @param {Option[]} options */
 function optionElements(options) {
+  /** @type {Map<string, HTMLOptionElement[]>} */
   const groups = new Map();
   for (const option of options) {
     const name = option.group ?? "";
-    if (!groups.has(name)) groups.set(name, []);
-    groups.get(name).push(make("option", {value: option.key}, option.label));
+    groups.set(name, [...(groups.get(name) ?? []), make("option", {value: option.key}, option.label)]);
   }
   return [...groups].flatMap(([name, members]) =>
     (name ? [make("optgroup", {label: name}, members)] : members));
 }
 
-/* Numbers of combinations to show. */
+/** Numbers of combinations to show.
+ * @param {number[]} [sizes] @param {number} [fallback] @returns {ControlSpec} */
 export function topControl(sizes = [10, 20, 40], fallback = 20) {
   return {
     name: "top", label: "Combinations",
@@ -76,6 +81,7 @@ export function topControl(sizes = [10, 20, 40], fallback = 20) {
   };
 }
 
+/** @param {string} [fallback] @returns {ControlSpec} */
 export function scaleControl(fallback = "linear") {
   return {
     name: "scale", label: "Scale",
@@ -84,6 +90,7 @@ export function scaleControl(fallback = "linear") {
   };
 }
 
+/** @param {string} [fallback] @returns {ControlSpec} */
 export function colourControl(fallback = "detector") {
   return {
     name: "colour", label: "Colours by",
@@ -92,7 +99,8 @@ export function colourControl(fallback = "detector") {
   };
 }
 
-/* Columns by pair, grouped by whether they need ground truth. */
+/** Columns by pair, grouped by whether they need ground truth.
+ * @param {Entry} entry @param {(name: string) => boolean} [wanted] @returns {Option[]} */
 export function columnOptions(entry, wanted = () => true) {
   return Object.keys(entry.columns).filter(wanted).map(name => ({
     key: name, label: labelOf(name),
@@ -100,6 +108,7 @@ export function columnOptions(entry, wanted = () => true) {
   }));
 }
 
+/** @param {Entry} entry */
 export function measureOptions(entry) {
   return measuresOf(entry).map(({key, label}) => ({
     key, label, group: isGroundTruth(key) ? "by ground truth" : "by inliers, counts and times",

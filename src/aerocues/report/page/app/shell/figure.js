@@ -1,8 +1,4 @@
-/* Figures: drawn when scrolled into view, drawn anew when the view changes, saved on request.
-
-   A figure is {id, title, read, controls, available(entry), draw(context)}. `read` says how to read
-   it. `available` gives true or the reason why there is nothing. `draw` gives {data, layout, height,
-   note} for Plotly, {svg(), height, table} or {empty: reason}, where context = {entry, shown, width, narrow, theme, colours, option}. */
+/* Figures: drawn when scrolled into view, drawn anew when the view changes, saved on request. */
 
 import {themeName, THEMES} from "../basis/colours.js";
 import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
@@ -14,16 +10,19 @@ import {bytesOf} from "../basis/payload.js";
 import {currentEntry} from "../basis/state.js";
 import {selectControl} from "./controls.js";
 
+/** @type {Figure[]} */
 export const figures = [];
 const NARROW = 480;
 const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
 const touched = window.matchMedia("(pointer: coarse)");
 
+/** @param {HTMLElement} parent @param {FigureSpec} spec */
 export function addFigure(parent, spec) {
   const plot = make("div", {class: "plot", role: "img", "aria-label": spec.title});
   const note = make("p", {class: "note", hidden: true});
-  const controls = (spec.controls ?? []).map(control => selectControl(spec.id, control));
-  const save = format => make("button", {
+  const {controls: specs = [], ...rest} = spec;
+  const controls = specs.map(control => selectControl(spec.id, control));
+  const save = (/** @type {string} */ format) => make("button", {
     type: "button", class: "quiet", "aria-label": `Save “${spec.title}” as ${format}`,
     onclick: () => saveFigure(figure, format),
   }, format);
@@ -34,10 +33,10 @@ export function addFigure(parent, spec) {
     make("div", {class: "controls"}, controls.map(control => control.element),
       make("span", {class: "save"}, ["SVG", "PNG", "CSV"].map(save))),
     plot, note);
+  /** @type {Figure} */
   const figure = {
-    ...spec, element, plot, noteElement: note, controls: Object.fromEntries(
-      controls.map((control, i) => [spec.controls[i].name, control])),
-    stale: true, near: false, width: 0, redraw: () => drawFigure(figure),
+    ...rest, element, plot, noteElement: note, stale: true, near: false, width: 0,
+    controls: Object.fromEntries(controls.map((control, i) => [specs[i].name, control])),
   };
   parent.append(element);
   figures.push(figure);
@@ -46,6 +45,7 @@ export function addFigure(parent, spec) {
   return figure;
 }
 
+/** @param {Figure} figure @param {number} width @param {Theme} theme @returns {FigureContext} */
 function figureContext(figure, width, theme) {
   const entry = currentEntry();
   return {
@@ -54,6 +54,7 @@ function figureContext(figure, width, theme) {
   };
 }
 
+/** @param {Figure} figure @param {FigureContext} context @returns {Drawn} */
 function describeFigure(figure, context) {
   const reason = figure.available?.(context.entry) ?? true;
   if (reason !== true) return {empty: reason};
@@ -61,6 +62,7 @@ function describeFigure(figure, context) {
   return figure.draw(context);
 }
 
+/** @param {Figure} figure */
 export function drawFigure(figure) {
   const width = Math.floor(figure.plot.clientWidth);
   if (!width || !window.Plotly) return;
@@ -70,7 +72,7 @@ export function drawFigure(figure) {
   const drawn = describeFigure(figure, context);
   figure.element.classList.toggle("empty", Boolean(drawn.empty));
   showNote(figure, drawn);
-  if (drawn.empty) {
+  if (drawn.empty !== undefined) {
     if (figure.plot.classList.contains("js-plotly-plot")) Plotly.purge(figure.plot);
     figure.plot.replaceChildren(make("p", {class: "nothing"}, drawn.empty));
     figure.plot.style.height = "auto";
@@ -86,6 +88,7 @@ export function drawFigure(figure) {
   Plotly.react(figure.plot, drawn.data, fullLayout(drawn, context), CONFIG);
 }
 
+/** @param {Figure} figure @param {Drawn} drawn */
 function showNote(figure, drawn) {
   figure.noteElement.hidden = !drawn.note;
   figure.noteElement.textContent = drawn.note ?? "";
@@ -93,11 +96,14 @@ function showNote(figure, drawn) {
     .filter(Boolean).join(". "));
 }
 
+/** @param {PlotDrawn} drawn @param {FigureContext} context @returns {Layout} */
 function fullLayout({layout, height}, {width, narrow, colours}) {
+  /** @type {Axis} */
   const axis = {
     gridcolor: colours.grid, linecolor: colours.line, zerolinecolor: colours.line, zeroline: false,
     tickcolor: colours.line, automargin: true,
   };
+  /** @type {Layout} */
   const base = {
     width, height, autosize: false, paper_bgcolor: colours.surface, plot_bgcolor: colours.surface,
     font: {family: FONT, size: narrow ? 11 : 12, color: colours.ink},
@@ -109,6 +115,7 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
       font: {size: narrow ? 10.5 : 11.5}, itemsizing: "constant"},
     transition: {duration: 0},
   };
+  /** @type {Layout} */
   const merged = {...base, ...layout};
   for (const part of ["margin", "legend", "font", "hoverlabel"]) {
     merged[part] = {...base[part], ...layout[part]};
@@ -119,7 +126,8 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
   return merged.yaxis2 ? merged : withKnownMargins(merged);
 }
 
-/* Margins worked out here: to have Plotly find them, it draws everything twice or more. */
+/** Margins worked out here: to have Plotly find them, it draws everything twice or more.
+ * @param {Layout} layout */
 function withKnownMargins(layout) {
   const {xaxis, yaxis, margin} = layout;
   if (xaxis?.type !== "category" && xaxis?.automargin) {
@@ -133,27 +141,30 @@ function withKnownMargins(layout) {
   return layout;
 }
 
-const ruler = document.createElement("canvas").getContext("2d");
+const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
 
+/** @param {string[]} texts @param {number} size */
 export function widestText(texts, size) {
   ruler.font = `${size}px ${FONT}`;
   return Math.ceil(Math.max(0, ...texts.map(text => ruler.measureText(text).width)));
 }
 
+/** @param {Axis} axis @param {Axis} own @returns {Axis} */
 function withAxis(axis, own) {
   const title = typeof own.title === "string" ? {text: own.title} : own.title;
   return {...axis, ...own, title};
 }
 
-/* Saved figures are in the light theme, as paper is. */
+/** Saved figures are in the light theme, as paper is.
+ * @param {Figure} figure @param {string} format */
 async function saveFigure(figure, format) {
   const width = Math.max(figure.width || 0, 900);
   const context = figureContext(figure, width, "light");
   const drawn = describeFigure(figure, context);
-  if (drawn.empty) return announce(drawn.empty);
+  if (drawn.empty !== undefined) return announce(drawn.empty);
   const stem = fileStem(context.entry.name, figure.title);
-  if (format === "CSV") return saveCsv(stem, ...(drawn.table ?? tableOfTraces(drawn.data)));
+  if (format === "CSV") return saveCsv(stem, ...(drawn.svg ? drawn.table : tableOfTraces(drawn.data)));
   if (drawn.svg) return saveDrawing(drawn.svg(), stem, format);
   const layout = fullLayout(drawn, context);
   const kind = format.toLowerCase();
@@ -165,6 +176,7 @@ async function saveFigure(figure, format) {
   return saveFile(`${stem}.${kind}`, content, "image/svg+xml");
 }
 
+/** @param {SVGSVGElement} svg @param {string} stem @param {string} format */
 async function saveDrawing(svg, stem, format) {
   const text = new XMLSerializer().serializeToString(svg);
   if (format === "SVG") return saveFile(`${stem}.svg`, text, "image/svg+xml");
@@ -172,34 +184,38 @@ async function saveDrawing(svg, stem, format) {
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
   await image.decode();
   const canvas = make("canvas", {width: 2 * image.width, height: 2 * image.height});
-  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-  return canvas.toBlob(blob => saveFile(`${stem}.png`, blob));
+  canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toBlob(blob => saveFile(`${stem}.png`, blob, "image/png"));
 }
 
-/* The points of a figure as a table, for those who would rather have numbers. */
+/** The points of a figure as a table, for those who would rather have numbers.
+ * @param {Trace[]} traces @returns {Table} */
 function tableOfTraces(traces) {
-  const plain = value => (typeof value === "string" ? unsafe(value) : value);
+  const plain = (/** @type {unknown} */ value) => (typeof value === "string" ? unsafe(value) : value);
+  /** @type {unknown[][]} */
   const rows = [];
   for (const trace of traces.filter(each => each.name !== "not in the table")) {
     const label = plain(trace.name ?? "");
     if (trace.z) {
-      trace.z.forEach((row, i) => row.forEach((value, j) => {
+      /** @type {Matrix} */ (trace.z).forEach((row, i) => row.forEach((value, j) => {
         if (isKnown(value)) rows.push([label, plain(trace.x[j]), plain(trace.y[i]), value]);
       }));
       continue;
     }
-    (trace.y ?? trace.x).forEach((_, i) => {
+    (trace.y ?? trace.x).forEach((/** @type {unknown} */ _, /** @type {number} */ i) => {
       rows.push([label, plain(trace.x[i]), plain(trace.y[i]), plain(trace.ids?.[i] ?? "")]);
     });
   }
   return [["series", "x", "y", "value_or_name"], rows];
 }
 
+/** @param {string} text */
 function unsafe(text) {
   return text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
 }
 
-/* Marks figures as out of date and draws those near the window, one a frame, those in it first. */
+/** Marks figures as out of date and draws those near the window, one a frame, those in it first.
+ * @param {Set<string>} changed */
 export function refreshFigures(changed) {
   for (const figure of figures) {
     if ([...changed].some(key => concerns(key, figure))) figure.stale = true;
@@ -209,10 +225,11 @@ export function refreshFigures(changed) {
 
 const OF_THE_TABLE = ["sort", "columns", "rows"];
 
-/* Whether a figure shows what a key of the state stands for. */
+/** Whether a figure shows what a key of the state stands for.
+ * @param {string} key @param {Figure} figure */
 function concerns(key, figure) {
   if (OF_THE_TABLE.includes(key)) return false;
-  if (key === "q" || CODES.includes(key)) return !figure.ignoresFilter;
+  if (key === "q" || CODES.some(code => code === key)) return !figure.ignoresFilter;
   return !key.includes(".") || key.startsWith(`${figure.id}.`);
 }
 
@@ -231,6 +248,7 @@ export function drawStale() {
   });
 }
 
+/** @param {Figure} figure */
 function isInWindow({plot}) {
   const {top, bottom} = plot.getBoundingClientRect();
   return bottom > 0 && top < window.innerHeight;

@@ -5,7 +5,9 @@ import {safe} from "../basis/elements.js";
 import {isKnown} from "../basis/numbers.js";
 import {categoryAxis} from "./axes.js";
 
-/* A matrix of correlations with its numbers in the cells. */
+/** A matrix of correlations with its numbers in the cells.
+ * @param {{x: string[], y: string[], z: Matrix, theme: Theme, narrow: boolean, what: string, low?: number}} matrix
+ * @returns {PlotDrawn} */
 export function matrixFigure({x, y, z, theme, narrow, what, low = -1}) {
   const numbered = narrow && x.length > 4 && x.length === y.length;
   const labels = numbered
@@ -27,17 +29,20 @@ export function matrixFigure({x, y, z, theme, narrow, what, low = -1}) {
   };
 }
 
-/* As short as can be: ".92". */
+/** As short as can be: ".92".
+ * @param {Value} value */
 function correlationText(value) {
   return isKnown(value) ? value.toFixed(2).replace(/^(-?)0\./, "$1.").replace("1.00", "1") : "";
 }
 
+/** @param {Matrix} matrix */
 export function lowestOf(matrix) {
   const known = matrix.flat().filter(isKnown);
   return known.length ? Math.min(...known) : 0;
 }
 
-/* Correlations of rankings are seldom negative: the colours begin where the values do. */
+/** Correlations of rankings are seldom negative: the colours begin where the values do.
+ * @param {Matrix} matrix */
 export function lowEnd(matrix) {
   const low = lowestOf(matrix);
   return low < 0 ? -1 : Math.min(0.9, Math.floor(low * 10) / 10);

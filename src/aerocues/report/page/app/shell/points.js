@@ -5,8 +5,9 @@ import {safe} from "../basis/elements.js";
 import {fixed, isKnown, percent, shown, valueText} from "../basis/numbers.js";
 import {names} from "./axes.js";
 
-/* Axes, margins and legend of a cloud of points. The margins are given, as to have Plotly find them
-   takes it twice the time. */
+/** Axes, margins and legend of a cloud of points. The margins are given, as to have Plotly find them
+ * takes it twice the time.
+ * @param {Axis} xaxis @param {Axis} yaxis @param {boolean} narrow */
 export function scatterFrame(xaxis, yaxis, narrow) {
   return {
     xaxis: {...xaxis, automargin: false}, yaxis: {...yaxis, automargin: false}, hovermode: "closest",
@@ -15,17 +16,21 @@ export function scatterFrame(xaxis, yaxis, narrow) {
   };
 }
 
-/* Means leave failed pairs out, so what fails on the hard ones looks good: a success rate near the
-   best score's is asked for. */
+/** Means leave failed pairs out, so what fails on the hard ones looks good: a success rate near the
+ * best score's is asked for.
+ * @param {Entry} entry @param {number} a */
 export function isSound(entry, a) {
   const {success_rate: success, best, settings} = entry.score;
-  return !isKnown(success[best]) || success[a] >= (settings?.good ?? 0.9) * success[best];
+  const [own, bestOne] = [success[a], success[best]];
+  return !isKnown(bestOne) || (own ?? 0) >= settings.good * bestOne;
 }
 
+/** @param {Entry} entry @param {number[]} rows @param {string} code @param {Measure} x @param {Measure} y @param {Theme} theme @returns {Trace[]} */
 export function pointsByMethod(entry, rows, code, x, y, theme) {
-  const groups = [...new Set(entry[code])];
+  const methods = entry[/** @type {Code} */ (code)];
+  const groups = [...new Set(methods)];
   return groups.map((name, i) => {
-    const members = rows.filter(a => entry[code][a] === name);
+    const members = rows.filter(a => methods[a] === name);
     const {color, symbol, outline} = seriesStyle(theme, i);
     return {
       type: "scatter", mode: "markers", name: safe(name), x: members.map(a => x.values[a]),
@@ -35,6 +40,7 @@ export function pointsByMethod(entry, rows, code, x, y, theme) {
   }).filter(trace => trace.x.length);
 }
 
+/** @param {Entry} entry @param {number} a @param {...Measure} measures */
 function pointText(entry, a, ...measures) {
   return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
     `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`

@@ -1,27 +1,32 @@
 /* The shell of the page: masthead, toolbar with filter, chips and contents, and the sections. */
 
 import {themeName} from "../basis/colours.js";
-import {make} from "../basis/elements.js";
+import {elementOf, make} from "../basis/elements.js";
 import {CODES, entries} from "../basis/entries.js";
 import {chosenChips, isFiltered, shownIn, unknownWords} from "../basis/filter.js";
 import {listed} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
 
+/** @type {Section[]} */
 const sections = [];
 
-/* A section: {id, title, read, build(body), available(entry), update(body, changed)}. */
+/** @param {SectionSpec} spec */
 export function addSection(spec) {
-  sections.push(spec);
+  const body = make("div", {class: "body"});
+  const element = make("section", {id: spec.id, "aria-labelledby": `title-${spec.id}`},
+    make("h2", {id: `title-${spec.id}`, tabindex: "-1"}, spec.title),
+    make("p", {class: "read"}, spec.read), body);
+  sections.push({...spec, body, element});
 }
 
 export function buildMasthead() {
   const {title, made, version} = payload;
   const day = String(made).replace("T", " ").slice(0, 16);
-  document.getElementById("masthead").append(
+  elementOf("masthead").append(
     make("div", {}, make("h1", {}, title),
       make("p", {class: "byline"}, `Detectors, descriptors and matchers compared by aerocues ${version}, ${day}`)));
-  document.getElementById("colophon").append(
+  elementOf("colophon").append(
     `Made by aerocues ${version}. This page is one file: it works offline and sends nothing anywhere.`);
 }
 
@@ -37,7 +42,7 @@ export function buildToolbar() {
   }}, "Clear");
   const themes = make("button", {type: "button", class: "quiet", id: "theme", onclick: () =>
     state.set({theme: themeName() === "dark" ? "light" : "dark"})});
-  document.getElementById("toolbar").append(
+  elementOf("toolbar").append(
     make("div", {class: "bar"},
       buildEntryChoice(),
       make("label", {class: "filter", for: "filter"}, make("span", {class: "word"}, "Filter"), filter),
@@ -45,7 +50,7 @@ export function buildToolbar() {
       clear, buildChips(), themes),
     make("p", {class: "hint", id: "filter-help"}),
     make("nav", {"aria-label": "Sections", id: "contents"}, sections.map(section =>
-      make("a", {href: `#${section.id}`, onclick: event => { event.preventDefault(); goTo(section.id); }},
+      make("a", {href: `#${section.id}`, onclick: (/** @type {Event} */ event) => { event.preventDefault(); goTo(section.id); }},
         section.title))));
   return {filter, clear, themes};
 }
@@ -75,18 +80,20 @@ function buildChips() {
   return panel;
 }
 
-/* Escape, and a click elsewhere, close an open panel. */
+/** Escape, and a click elsewhere, close an open panel.
+ * @param {HTMLDetailsElement} panel */
 function closeByLeaving(panel) {
   document.addEventListener("click", event => {
-    if (!panel.contains(event.target)) panel.open = false;
+    if (event.target instanceof Node && !panel.contains(event.target)) panel.open = false;
   });
   panel.addEventListener("keydown", event => {
     if (event.key !== "Escape" || !panel.open) return;
     panel.open = false;
-    panel.querySelector("summary").focus();
+    panel.querySelector("summary")?.focus();
   });
 }
 
+/** @param {Code} code @param {string} name */
 function toggleChip(code, name) {
   const chips = chosenChips(code);
   if (!chips.delete(name)) chips.add(name);
@@ -94,17 +101,14 @@ function toggleChip(code, name) {
 }
 
 export function buildSections() {
-  const main = document.getElementById("sections");
+  const main = elementOf("sections");
   for (const section of sections) {
-    section.body = make("div", {class: "body"});
-    section.element = make("section", {id: section.id, "aria-labelledby": `title-${section.id}`},
-      make("h2", {id: `title-${section.id}`, tabindex: "-1"}, section.title),
-      make("p", {class: "read"}, section.read), section.body);
     main.append(section.element);
-    section.build?.(section.body);
+    section.build(section.body);
   }
 }
 
+/** @param {string} id */
 export function goTo(id) {
   const element = document.getElementById(id);
   if (!element) return;
@@ -113,6 +117,7 @@ export function goTo(id) {
   element.querySelector("h2")?.focus({preventScroll: true});
 }
 
+/** @param {ReturnType<typeof buildToolbar>} toolbar */
 export function updateToolbar({filter, clear, themes}) {
   const entry = currentEntry();
   const shownNow = shownIn(entry).length;
@@ -121,47 +126,58 @@ export function updateToolbar({filter, clear, themes}) {
     filter.value = state.get("q");
   }
   const select = document.getElementById("entry");
-  if (select) select.value = entry.name;
+  if (select instanceof HTMLSelectElement) select.value = entry.name;
   clear.hidden = !isFiltered();
-  document.getElementById("filter-count").textContent =
+  elementOf("filter-count").textContent =
     `${shownNow} of ${entry.combinations.length}`;
-  document.getElementById("filter-help").textContent = unknown.length
+  elementOf("filter-help").textContent = unknown.length
     ? `No combination has a part that begins with ${listed(unknown.map(word => `“${word}”`), "or")}.`
     : "“orb -flann”: with ORB, without FLANN. “or sift daisy”: with SIFT or DAISY. “not l2”: without L2. Filters everything below.";
-  document.getElementById("filter-help").classList.toggle("warning", unknown.length > 0);
+  elementOf("filter-help").classList.toggle("warning", unknown.length > 0);
   themes.textContent = themeName() === "dark" ? "Light" : "Dark";
   themes.setAttribute("aria-label", `Show in ${themeName() === "dark" ? "light" : "dark"} colours`);
   updateChips(entry);
 }
 
+/** @param {Entry} entry */
 function updateChips(entry) {
   let count = 0;
-  for (const chip of document.querySelectorAll(".chip")) {
-    const {code, name} = chip.dataset;
+  /** @type {NodeListOf<HTMLElement>} */
+  const chips = document.querySelectorAll(".chip");
+  for (const chip of chips) {
+    const [code, name] = [/** @type {Code} */ (chip.dataset.code), chip.dataset.name ?? ""];
     const pressed = chosenChips(code).has(name);
     count += pressed ? 1 : 0;
     chip.setAttribute("aria-pressed", String(pressed));
     chip.classList.toggle("absent", !entry[code].includes(name));
   }
-  document.getElementById("methods-summary").textContent = count ? `Methods (${count})` : "Methods";
+  elementOf("methods-summary").textContent = count ? `Methods (${count})` : "Methods";
 }
 
+/** @param {Set<string>} changed */
 export function updateSections(changed) {
   const entry = currentEntry();
   for (const section of sections) {
     const available = section.available?.(entry) ?? true;
-    section.element.hidden = available !== true;
-    const link = document.querySelector(`#contents a[href="#${section.id}"]`);
-    link.hidden = available !== true;
-    if (available === true) section.update?.(section.body, changed);
+    section.element.hidden = !available;
+    linkTo(section.id).hidden = !available;
+    if (available) section.update?.(section.body, changed);
   }
+}
+
+/** The link to a section in the contents.
+ * @param {string} id @returns {HTMLElement} */
+function linkTo(id) {
+  const link = document.querySelector(`#contents a[href="#${id}"]`);
+  if (!(link instanceof HTMLElement)) throw new Error(`the contents have no link to ${id}`);
+  return link;
 }
 
 /* Marks the section in view in the contents. */
 export function followScrolling() {
   const observer = new IntersectionObserver(seen => {
     for (const {target, isIntersecting} of seen) {
-      const link = document.querySelector(`#contents a[href="#${target.id}"]`);
+      const link = linkTo(target.id);
       if (isIntersecting) link.setAttribute("aria-current", "true");
       else link.removeAttribute("aria-current");
     }

@@ -2,14 +2,16 @@
 
 import {seriesStyle} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
-import {counted, duration, fixed, listed, shown} from "../basis/numbers.js";
+import {counted, duration, fixed, shown} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {categoryAxis, heightOfRows} from "../shell/axes.js";
 
+/** @param {Entry} entry */
 function machinesOf(entry) {
-  return (payload.machines ?? []).filter(each => [each.first, each.second].includes(entry.name));
+  return payload.machines.filter(each => [each.first, each.second].includes(entry.name));
 }
 
+/** @type {FigureSpec} */
 export const MACHINES = {
   id: "machines", title: "Between machines", ignoresFilter: true,
   read: "How many times as long the second machine takes, stage by stage: the dot is the geometric mean over the same "
@@ -17,10 +19,10 @@ export const MACHINES = {
   available: entry => (machinesOf(entry).length ? true : "This data set was measured on one machine only."),
   draw({entry, theme}) {
     const both = machinesOf(entry);
-    const known = both.filter(each => Array.isArray(each.times));
-    if (!known.length) return {empty: listed(both.map(each => each.times.unavailable), "")};
-    const rows = known.flatMap((each, i) => each.times.map(time => ({...time, i,
-      label: known.length > 1 ? safe(`${each.second}: ${time.stage}`) : safe(time.stage)})));
+    const known = both.flatMap(({second, times}) => (Array.isArray(times) ? [{second, times}] : []));
+    if (!known.length) return {empty: both.map(({times}) => (Array.isArray(times) ? "" : times.unavailable)).join("; ")};
+    const rows = known.flatMap(({second, times}) => times.map(time => ({...time,
+      label: known.length > 1 ? safe(`${second}: ${time.stage}`) : safe(time.stage)})));
     const {color} = seriesStyle(theme, 0);
     const colour = seriesStyle(theme, 1).color;
     return {

@@ -8,6 +8,7 @@ import {categoryAxis, heightOfRows, names} from "../shell/axes.js";
 import {scaleControl, topControl} from "../shell/controls.js";
 import {inTimeOrder, ORDERS, secondsAxis} from "./stage-times.js";
 
+/** @type {FigureSpec} */
 export const PER_THOUSAND = {
   id: "thousand", title: "Time per thousand",
   read: "The time until a thousand matches, or a thousand inliers, are found: the gap between the dots is what wrong "
@@ -23,7 +24,7 @@ export const PER_THOUSAND = {
     const data = columns.map((column, i) => {
       const values = meansOf(entry, column);
       return {type: "scatter", mode: "markers", name: safe(labelOf(column).replace("seconds ", "")),
-        x: top.map(a => values[a]), y: names(entry, top), marker: {...pick(seriesStyle(theme, i)), size: 9, symbol: SYMBOLS[i]},
+        x: top.map(a => values[a]), y: names(entry, top), marker: {color: seriesStyle(theme, i).color, size: 9, symbol: SYMBOLS[i]},
         hovertext: top.map(a => `<b>${safe(entry.combinations[a])}</b><br>${safe(labelOf(column))}: ${safe(duration(values[a]))}`),
         hoverinfo: "text"};
     });
@@ -35,10 +36,7 @@ export const PER_THOUSAND = {
   },
 };
 
-function pick({color}) {
-  return {color};
-}
-
+/** @param {Entry} entry */
 function perThousand(entry) {
   return ["seconds_per_1k_matches", "seconds_per_1k_inliers", "seconds_per_1k_excess_inliers"]
     .filter(name => measureOf(entry, name));

@@ -8,6 +8,7 @@ import {MACHINES} from "./machines.js";
 import {PER_THOUSAND} from "./per-thousand.js";
 import {STAGES_FIGURE} from "./stages.js";
 
+/** @type {SectionSpec} */
 export const TIME_SECTION = {
   id: "time",
   title: "Time",
