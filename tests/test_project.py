@@ -130,6 +130,20 @@ def test_the_continuous_check_uses_targets_that_exist(repository: Path) -> None:
     assert used <= targets
 
 
+def test_every_package_has_its_place_in_the_guide(
+    repository: Path, project: dict[str, Any]
+) -> None:
+    [contract] = [
+        each for each in project["tool"]["importlinter"]["contracts"] if each["type"] == "layers"
+    ]
+    packages = [name for layer in contract["layers"] for name in layer.split(" | ")]
+    table = (repository / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = "".join(re.findall(r"^\| (`.*?) \|", table, re.MULTILINE))
+    assert re.findall(r"`(\w+)`", rows) == packages
+    picture = (repository / "docs" / "architecture.svg").read_text(encoding="utf-8")
+    assert re.findall(r'font-weight="650".*?>(\w+)<', picture)[-len(packages) :] == packages
+
+
 def test_what_the_demo_leaves_is_removed(repository: Path) -> None:
     asked = ["make", "--dry-run", "clean"]
     removed = subprocess.run(asked, cwd=repository, capture_output=True, text=True, check=True)
@@ -139,7 +153,7 @@ def test_what_the_demo_leaves_is_removed(repository: Path) -> None:
 
 
 def test_source_files_stay_readable(tracked_texts: dict[str, str]) -> None:
-    sources = {name: text for name, text in tracked_texts.items() if re.match(r"src/.*\.py$", name)}
+    sources = {name: text for name, text in tracked_texts.items() if re.match(r"src/.*\.(?:py|js)$", name)}
     too_long = {
         name: text.count("\n")
         for name, text in sources.items()
