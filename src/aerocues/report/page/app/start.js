@@ -1,4 +1,4 @@
-/* Starts the page: tables at once, figures as soon as Plotly, which comes last, is there. */
+/* Starts the page: tables at once, figures as soon as Plotly is loaded, which comes last. */
 
 import {applyTheme, darkWanted} from "./basis/colours.js";
 import {state} from "./basis/state.js";
@@ -52,7 +52,7 @@ function start() {
   if (location.hash && !location.hash.includes("=")) goTo(location.hash.slice(1));
 }
 
-/* Paper is light and narrow, and shows every figure, seen or not. */
+/* The printed page is light and narrow, and has every figure. */
 function drawForPrint() {
   document.documentElement.classList.add("printing");
   applyTheme();

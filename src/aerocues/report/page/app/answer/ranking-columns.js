@@ -16,7 +16,7 @@ function scoreColumns(entry) {
   /** @type {(name: ScoreFigure, text: (value: Value) => string) => Pick<Column, "number" | "value" | "text">} */
   const of = (name, text) => ({number: true, value: a => score[name][a], text: a => text(score[name][a])});
   return [
-    {key: "rank", label: "Rank", title: "Place by CUES", usual: true, ...of("rank", shown)},
+    {key: "rank", label: "Rank", title: "Rank by CUES", usual: true, ...of("rank", shown)},
     {key: "combination", label: "Combination", title: "Detector-descriptor-norm-matcher",
       usual: true, value: a => entry.combinations[a], text: a => entry.combinations[a]},
     {key: "score", label: "CUES", usual: true, title: "Score with its 95 % interval over the pairs",
@@ -28,14 +28,14 @@ function scoreColumns(entry) {
       text: a => (isKnown(score.rank_low[a]) ? `${score.rank_low[a]}–${score.rank_high[a]}` : NONE)},
     {key: "rank_high", label: "Rank, worst", title: "Upper end of the rank's interval", ...of("rank_high", shown)},
     {key: "probability_best", label: "First in", usual: true,
-      title: "Share of the resamples in which it is the best", ...of("probability_best", percent)},
-    {key: "probability_top", label: `In top ${score.settings.top_k}`, title: "Share of the resamples in which it is among the best",
+      title: "Share of resamples in which it is the best", ...of("probability_best", percent)},
+    {key: "probability_top", label: `In top ${score.settings.top_k}`, title: "Share of resamples in which it is among the best",
       ...of("probability_top", percent)},
-    {key: "p_value", label: "p", usual: true, title: "Difference from the best, corrected for all comparisons; "
-      + "large: cannot be told from it", ...of("p_value", value => (isKnown(value) && value < 0.001 ? "< 0.001" : shown(value, 2)))},
-    {key: "success_rate", label: "Success", usual: true, title: "Share of the pairs that did not fail",
+    {key: "p_value", label: "p", usual: true, title: "Test of the difference from the best, corrected for the number "
+      + "of comparisons; large: not significantly different", ...of("p_value", value => (isKnown(value) && value < 0.001 ? "< 0.001" : shown(value, 2)))},
+    {key: "success_rate", label: "Success", usual: true, title: "Share of successful pairs",
       ...of("success_rate", percent)},
-    {key: "repeats", label: "Pairs", title: "Pairs it was measured on", ...of("repeats", shown)},
+    {key: "repeats", label: "Pairs", title: "Number of pairs measured", ...of("repeats", shown)},
   ];
 }
 
@@ -69,7 +69,7 @@ function meanColumns(entry) {
     .filter(measure => !["score", "success_rate"].includes(measure.key))
     .map(measure => ({
       key: measure.key, label: sentenceCase(measure.label), number: true, usual: usual.has(measure.key),
-      title: `Mean over the pairs that did not fail: ${definitionOf(entry, measure.key)}`,
+      title: `Mean over the successful pairs: ${definitionOf(entry, measure.key)}`,
       value: a => measure.values[a], text: a => valueText(measure.key, measure.values[a]),
     }));
 }
@@ -82,7 +82,7 @@ function timeColumns(entry) {
   return STAGES.filter(([stage]) => entry.medians[stage].some(isKnown))
     .map(([stage, label]) => ({
       key: `median_${stage}`, label, number: true, usual: stage === "total",
-      title: stage === "total" ? "Median over the pairs, for an image and a pair" : "Median over the pairs",
+      title: stage === "total" ? "Median over the pairs, for one image and one pair" : "Median over the pairs",
       value: a => entry.medians[stage][a], text: a => duration(entry.medians[stage][a]),
     }));
 }

@@ -1,4 +1,4 @@
-/* The table of all combinations: with their scores, as they pass the filter. */
+/* The table of all combinations that match the filter, with their scores. */
 
 import {rankingColumns} from "./ranking-columns.js";
 import {measureOf} from "../basis/entries.js";
@@ -12,8 +12,8 @@ export const RANKING = {
   columns: rankingColumns, rows: shownIn,
   read(entry) {
     const tested = entry.score.p_value.some(isKnown);
-    return "Click a heading to sort; the bar beside CUES is its 95\u00a0% interval, on one scale for all rows shown"
-      + `${tested ? "; rows with a dot are the best and those that cannot be told from it" : ""}. Other columns are means over the pairs that did not fail.`;
+    return "Click a heading to sort. The bar beside CUES is its 95\u00a0% interval, on one scale for all rows shown"
+      + `${tested ? ". A dot marks the best and those that are not significantly different" : ""}. Other columns are means over the successful pairs.`;
   },
   downFirst: (entry, {key}) => measureOf(entry, key)?.better === "higher" || ["probability_best", "probability_top",
     "score_low", "score_high", "p_value", "repeats"].includes(key),

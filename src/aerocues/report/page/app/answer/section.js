@@ -1,4 +1,4 @@
-/* Section 1: the answer, in words and a few figures, then the table of all. */
+/* Section 1: the answer in words and a few figures, and the table of all combinations. */
 
 import {RANKING} from "./ranking-table.js";
 import {disclosure, elementOf, figuresList, make} from "../basis/elements.js";
@@ -13,7 +13,7 @@ export const ANSWER_SECTION = {
   id: "answer",
   title: "Answer",
   read: "The best combination for these images by CUES, the Composite Unsupervised Efficiency Score "
-    + "(0 is the worst seen in everything, 1 the best), and how sure that is.",
+    + "(0: worst in all criteria, 1: best in all), and how certain this is.",
   build(body) {
     const all = make("div", {id: "all"});
     body.append(make("div", {id: "verdict"}), all);
@@ -32,16 +32,16 @@ export const ANSWER_SECTION = {
 function verdict(entry) {
   const score = entry.score;
   if (!isKnown(score.best) || !isKnown(score.score[score.best])) {
-    return [make("p", {class: "lead"}, "No combination has a score: see the table and the failures below.")];
+    return [make("p", {class: "lead"}, "No combination has a score. See the table and the failures below.")];
   }
   return [
     make("p", {class: "lead"}, ...leadSentence(entry)),
     make("div", {class: "cards"},
       bestCard(entry), equalsCard(entry),
       choiceCard(entry, "Fastest good one", score.fastest_good,
-        `the quickest with ${percent(score.settings.good)} of the best score and success rate`),
+        `the fastest with at least ${percent(score.settings.good)} of the best score and success rate`),
       choiceCard(entry, "Best with binary descriptors", score.best_binary,
-        "small descriptors, compared by Hamming distance"),
+        "small descriptors, compared by the Hamming distance"),
       filteredCard(entry)),
     make("p", {class: "facts"}, factsSentence(entry)),
   ];
@@ -56,12 +56,12 @@ function leadSentence(entry) {
     return [name, " is the only combination measured, so there is nothing to compare it with."];
   }
   const measured = ` is the best of ${entry.combinations.length} combinations on ${entry.dataset}.`;
-  if (units === 1) return [name, measured, " A single pair (or scene) says nothing of how sure that is."];
+  if (units === 1) return [name, measured, " With a single pair (or scene) the uncertainty is unknown."];
   const sure = isKnown(probability[best])
-    ? ` It comes first in ${inWords(percent(probability[best]))} of ${resamples(entry)}`
-    : " How sure that is cannot be told";
-  const rest = others ? `; ${counted(others, "other")} cannot be told from it`
-    : (untested.length ? "" : "; every other one is significantly worse");
+    ? ` It ranks first in ${inWords(percent(probability[best]))} of ${resamples(entry)}`
+    : " The uncertainty is unknown";
+  const rest = others ? `; ${counted(others, "other")} ${others === 1 ? "is" : "are"} not significantly different`
+    : (untested.length ? "" : "; all others are significantly worse");
   const unknown = untested.length
     ? `; ${untested.length} share too few pairs with it to be compared` : "";
   return [name, measured, sure, rest, unknown, "."];
@@ -83,17 +83,17 @@ function resamples(entry) {
 function factsSentence(entry) {
   /** @type {Record<string, string>} */
   const timings = {
-    exclusive: "times were taken with a core to themselves",
-    sampled: "times of some pairs were taken with a core to themselves, and scale those of the others",
-    scaled: "times are scaled by those of other pairs, taken with a core to themselves",
-    estimated: "times were taken while other measurements ran beside, and brute force was timed on a part",
-    shared: "times were taken while other measurements ran beside, so they are somewhat too long",
-    mixed: "some times were taken while other measurements ran beside",
+    exclusive: "each time was measured on a core of its own",
+    sampled: "some pairs were timed on a core of their own, and the times of the others were scaled to match",
+    scaled: "times were scaled to match pairs that were timed on a core of their own",
+    estimated: "times were measured beside other measurements, and brute force was timed on a sample",
+    shared: "times were measured beside other measurements and are somewhat too long",
+    mixed: "some times were measured beside other measurements",
   };
   const parts = [
     `${counted(entry.combinations.length, "combination")} on ${pairCount(entry)} of ${entry.dataset}`,
     entry.machine ? `measured on ${entry.machine}` : null,
-    entry.preset ? `scored by the preset “${entry.preset}”` : null, timings[entry.timing],
+    entry.preset ? `scored with the preset “${entry.preset}”` : null, timings[entry.timing],
   ];
   return `${parts.filter(Boolean).join("; ")}.`;
 }
@@ -115,9 +115,9 @@ function scoreFigures(entry, a) {
   return [
     ["CUES", `${fixed(score.score[a])} (${fixed(score.score_low[a])} to ${fixed(score.score_high[a])})`],
     ["Rank", rankText(score, a)],
-    ["Succeeds on", `${percent(score.success_rate[a])} of pairs`],
+    ["Success", `${percent(score.success_rate[a])} of pairs`],
     meanFigure(precision), meanFigure(truth),
-    isKnown(total) ? ["Time, an image and a pair", duration(total)] : null,
+    isKnown(total) ? ["Time per image and pair", duration(total)] : null,
   ];
 }
 
@@ -144,11 +144,11 @@ function equalsCard(entry) {
     if (second === undefined) return null;
     return card("Runner-up", entry.combinations[second], figuresList([
       ...scoreFigures(entry, second),
-      ["Differs from the best", isKnown(score.p_value[second])
+      ["Difference from the best", isKnown(score.p_value[second])
         ? `p = ${shown(score.p_value[second], 2)}` : "not tested"]]));
   }
   const row = (/** @type {number} */ a) => make("li", {value: score.rank[a]}, make("span", {}, entry.combinations[a]), ` ${fixed(score.score[a])}`);
-  return card("Cannot be told from it", null, [
+  return card("Not significantly different", null, [
     make("ol", {class: "equals"}, equals.slice(0, EQUALS_SHOWN).map(row)),
     equals.length > EQUALS_SHOWN
       ? disclosure(`${equals.length - EQUALS_SHOWN} more`,
@@ -160,7 +160,7 @@ function equalsCard(entry) {
 function choiceCard(entry, title, a, meaning) {
   if (!isKnown(a)) return null;
   if (a === entry.score.best) {
-    return card(title, entry.combinations[a], make("p", {}, `The best one is this, too: ${meaning}.`));
+    return card(title, entry.combinations[a], make("p", {}, `This is also the best one: ${meaning}.`));
   }
   return card(title, entry.combinations[a], [
     make("p", {}, `${sentenceCase(meaning)}${timesAsFast(entry, a)}.`),
@@ -179,6 +179,6 @@ function timesAsFast(entry, a) {
 function filteredCard(entry) {
   const first = shownIn(entry)[0];
   if (!isFiltered() || first === undefined || first === entry.score.best || !isKnown(entry.score.rank[first])) return null;
-  return card("Best that passes the filter", entry.combinations[first],
+  return card("Best that matches the filter", entry.combinations[first],
     figuresList(scoreFigures(entry, first)), "filtered");
 }

@@ -1,4 +1,4 @@
-/* Colours: Okabe and Ito's, which people with any colour vision tell apart, and cividis. */
+/* Colours: those of Okabe and Ito, which are distinct for every kind of colour vision, and cividis. */
 
 import {isKnown} from "./numbers.js";
 import {state} from "./state.js";
@@ -21,7 +21,7 @@ const OUTLINES = ["circle-open", "diamond-open", "square-open", "triangle-up-ope
 export const SCALE = "Cividis";
 export const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
   [165, 156, 116], [195, 179, 105], [225, 204, 85], [254, 232, 56]];
-/* From -1 over 0 to 1: blue, the surface's own, orange. */
+/* From -1 over 0 to 1: blue, the colour of the surface, orange. */
 export const DIVERGING = {
   light: [[0, "#0072b2"], [0.5, "#f7f7f5"], [1, "#d98a00"]],
   dark: [[0, "#56b4e9"], [0.5, "#20262e"], [1, "#e69f00"]],

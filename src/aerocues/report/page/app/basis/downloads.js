@@ -1,4 +1,4 @@
-/* Files to save: tables as CSV, pictures as data. */
+/* Files to save: tables as CSV, and pictures. */
 
 import {make} from "./elements.js";
 

@@ -1,4 +1,4 @@
-/* Elements. Text goes in as text nodes only, so nothing in data can become markup. */
+/* Elements. Text is added as text nodes only, so that no data can become markup. */
 
 /** The element with an id that the page has from the start.
  * @param {string} id */
@@ -23,7 +23,7 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** The nodes and texts in nested lists; what is missing is left out.
+/** The nodes and texts in nested lists, without missing ones.
  * @param {Content} content @returns {(Node | string)[]} */
 export function nodesOf(content) {
   if (Array.isArray(content)) return content.flatMap(nodesOf);
@@ -46,7 +46,7 @@ export function makeSvg(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Shows what stands in `data-tip` of the part of a drawing under the pointer.
+/** Shows the text in `data-tip` of the element under the pointer.
  * @param {SVGSVGElement} svg */
 export function withTips(svg) {
   const tip = elementOf("tip");
@@ -94,7 +94,7 @@ export function disclosure(summary, ...content) {
   return make("details", {class: "disclosure"}, make("summary", {}, summary), ...content);
 }
 
-/** A list of terms and what is said of them; missing ones are left out.
+/** A list of terms with their values, without missing ones.
  * @param {([string, Content] | null)[]} pairs */
 export function figuresList(pairs) {
   return make("dl", {}, pairs.map(pair =>

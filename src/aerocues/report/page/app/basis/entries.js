@@ -1,4 +1,4 @@
-/* Entries: one data set on one machine each. A number `a` is the position of a combination. */
+/* Entries: one dataset on one machine each. A number `a` is the position of a combination. */
 
 import {counted, isKnown, labelOf, NONE} from "./numbers.js";
 import {arrayOf, payload} from "./payload.js";
@@ -25,22 +25,22 @@ export function hasColumn(entry, name) {
   return Object.hasOwn(entry.columns, name);
 }
 
-/** Values of one combination over the pairs; NaN where there is none.
+/** Values of one combination over the pairs; NaN where unknown.
  * @param {Entry} entry @param {string} name @param {number} a */
 export function pairValues(entry, name, a) {
   const count = entry.pairs.length;
   return arrayOf(entry.columns[name].values).subarray(a * count, (a + 1) * count);
 }
 
-/** The mean over pairs of each combination: the score's own, where it has the criterion.
+/** The mean over pairs of each combination, from the score if it has the criterion.
  * @param {Entry} entry @param {string} name @returns {Value[]} */
 export function meansOf(entry, name) {
   return remember(entry, `means ${name}`, () =>
     entry.score.means[name] ?? entry.combinations.map((_, a) => meanOf(pairValues(entry, name, a))));
 }
 
-/** The same with failed pairs as 0, for what is better when higher: to compare with the truth, a
- * combination must not gain by failing on the hard pairs.
+/** The same with failed pairs as 0 if higher is better: in a comparison with the truth, a combination must
+ * not gain by failing on the hard pairs.
  * @param {Entry} entry @param {string} name @returns {Value[]} */
 export function meansWithFailures(entry, name) {
   return remember(entry, `means with failures ${name}`, () => {
@@ -60,7 +60,7 @@ export function mediansOf(entry, name) {
     entry.combinations.map((_, a) => medianOf(pairValues(entry, name, a))));
 }
 
-/** Positions of all combinations, the best first, those without a rank last.
+/** Positions of all combinations by rank; those without a rank come last.
  * @param {Entry} entry */
 export function ranked(entry) {
   return remember(entry, "ranked", () => {
@@ -86,7 +86,7 @@ export function definitionOf(entry, name) {
     || listed?.definition || "";
 }
 
-/** What can be put on an axis: one value a combination.
+/** Quantities for an axis: one value per combination.
  * @param {Entry} entry */
 export function measuresOf(entry) {
   return remember(entry, "measures", () => {
@@ -121,7 +121,7 @@ export function measureNamed(entry, key) {
   return found;
 }
 
-/** The first of some columns that the entry has.
+/** The first of these columns that the entry has.
  * @param {Entry} entry @param {string[]} names */
 export function firstColumn(entry, names) {
   return names.find(name => hasColumn(entry, name)) ?? null;

@@ -51,8 +51,8 @@ export function chosenChips(code) {
   return new Set(state.get(code).split(",").filter(Boolean));
 }
 
-/** The filter as it stands: whether a combination passes the words and the chips, by its four names
- * and, where they are at hand, the same in lower case.
+/** The current filter: whether a combination passes the words and the chips, by its four names and
+ * optionally the same names in lower case.
  * @returns {(names: string[], parts?: string[]) => boolean} */
 export function currentFilter() {
   const words = parseFilter(state.get("q"));
@@ -70,7 +70,7 @@ function passing(entry) {
   return partsOfNames(entry).map((parts, a) => passes(CODES.map(code => entry[code][a]), parts));
 }
 
-/* Words that are part of no combination anywhere. */
+/* Words that match no combination in any entry. */
 export function unknownWords() {
   const words = Object.values(parseFilter(state.get("q"))).flat();
   return words
@@ -85,7 +85,7 @@ export function isFiltered() {
 
 const filtered = {key: "", entries: /** @type {Map<Entry, number[]>} */ (new Map())};
 
-/** Positions of the combinations that pass, the best first.
+/** Positions of the combinations that pass the filter, by rank.
  * @param {Entry} entry */
 export function shownIn(entry) {
   const key = JSON.stringify(["q", ...CODES].map(name => state.get(name)));

@@ -1,4 +1,4 @@
-/* Numbers and names as people read them. */
+/* Numbers and names for display. */
 
 export const NONE = "–";
 
@@ -7,7 +7,7 @@ export function isKnown(value) {
   return Number.isFinite(value);
 }
 
-/** Three significant digits; whole numbers from 100 on, with thousands apart.
+/** Three significant digits; whole numbers from 100, with a separator of thousands.
  * @param {Value} value @param {number} [digits] */
 export function shown(value, digits = 3) {
   if (!isKnown(value)) return NONE;
@@ -17,7 +17,7 @@ export function shown(value, digits = 3) {
   return String(Number(value.toPrecision(digits)));
 }
 
-/** A score, with the same number of decimals everywhere.
+/** A score, always with the same number of decimals.
  * @param {Value} value @param {number} [decimals] */
 export function fixed(value, decimals = 3) {
   return isKnown(value) ? value.toFixed(decimals) : NONE;
@@ -53,12 +53,12 @@ export function listed(words, last = "and") {
 /** @type {Record<string, string>} */
 const LABELS = {
   score: "CUES", f1_score: "F1 score", points_3d: "3D points",
-  f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "time of detecting",
-  describe_seconds: "time of describing", match_seconds: "time of matching", verify_seconds: "time of verifying",
+  f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "detection time",
+  describe_seconds: "description time", match_seconds: "matching time", verify_seconds: "verification time",
   position_rmse: "position RMSE", position_error_share: "position error / extent",
   cloud_distance_median: "C2C median", cloud_distance_rms: "C2C RMS", cloud_distance_p95: "C2C 95th percentile",
-  reference_distance_median: "C2C back, median", reference_distance_rms: "C2C back, RMS",
-  reference_distance_p95: "C2C back, 95th percentile", reconstruction_seconds: "time of reconstruction",
+  reference_distance_median: "C2C reverse, median", reference_distance_rms: "C2C reverse, RMS",
+  reference_distance_p95: "C2C reverse, 95th percentile", reconstruction_seconds: "reconstruction time",
 };
 
 /** A column's name in words: `gt_precision@3` as "true precision at 3 px".

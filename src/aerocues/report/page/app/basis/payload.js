@@ -1,4 +1,4 @@
-/* The payload: everything that was measured. Arrays are decoded when first asked for. */
+/* The payload: everything that was measured. Arrays are decoded on first use. */
 
 /** @type {Payload} */
 export const payload = JSON.parse(document.getElementById("payload")?.textContent ?? "");
@@ -15,7 +15,7 @@ export function bytesOf(base64) {
   return bytes;
 }
 
-/** {"f32": ...}, {"u8": ...} or {"u16": ..., low, high} as a typed array; an empty one for nothing.
+/** Packed numbers as a typed array, which is empty for null.
  * @param {Packed | null | undefined} packed @returns {Numbers} */
 export function arrayOf(packed) {
   if (!packed) return new Float32Array(0);

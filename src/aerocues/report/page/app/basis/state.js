@@ -1,4 +1,4 @@
-/* The state of the view: texts by key, kept in the URL's fragment so that a view can be shared. */
+/* The state of the view: texts by key, kept in the fragment of the URL so that a view can be shared. */
 
 import {entries} from "./entries.js";
 
@@ -13,7 +13,7 @@ export const state = {
     return this.values.get(key) ?? fallback;
   },
 
-  /** Sets keys to texts; null or "" brings back the default.
+  /** Sets keys to texts; null or "" restores the default.
    * @param {Record<string, string | null>} changes */
   set(changes) {
     /** @type {Set<string>} */
@@ -44,7 +44,7 @@ export const state = {
     history.replaceState(null, "", fragment ? `#${fragment}` : location.pathname + location.search);
   },
 
-  /** Reads the fragment; `#quality` alone is a link to a section. Gives what changed.
+  /** Reads the fragment and returns the changed keys. `#quality` alone is a link to a section.
    * @returns {Set<string>} */
   read() {
     const fragment = location.hash.slice(1);

@@ -2,7 +2,7 @@
 
 import {isKnown} from "./numbers.js";
 
-/** The values at some positions as numbers; NaN where there is none.
+/** The values at these positions as numbers; NaN where unknown.
  * @param {Value[]} values @param {number[]} positions */
 export function valuesAt(values, positions) {
   return positions.map(position => values[position] ?? NaN);

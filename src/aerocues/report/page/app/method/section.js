@@ -1,4 +1,4 @@
-/* Section 8: how all this was measured, what failed, what the words mean, how to cite it. */
+/* Section 8: how everything was measured, what failed, definitions, citation. */
 
 import {disclosure, elementOf, make, nodesOf, plainTable} from "../basis/elements.js";
 import {counted, labelOf, NONE, percent, shown} from "../basis/numbers.js";
@@ -9,7 +9,7 @@ import {currentEntry} from "../basis/state.js";
 export const METHOD_SECTION = {
   id: "method",
   title: "Method",
-  read: "How this was measured and scored, what failed and why, what every column means, and how to cite it.",
+  read: "How everything was measured and scored, what failed and why, the definition of every column, and how to cite this.",
   build(body) {
     body.append(make("div", {id: "method-entry"}), make("div", {id: "method-words"}, ...methodWords()));
   },
@@ -31,7 +31,7 @@ function methodOfEntry(entry) {
     outcomes(entry), failures(entry), excluded(entry)]);
 }
 
-/** Nested values as nested lists of terms; null for nothing.
+/** Nested values as nested lists of terms; null if there are none.
  * @param {string} title @param {{[name: string]: Json | undefined}} values */
 function block(title, values) {
   const known = Object.entries(values).filter(([, value]) => !isNothing(value));
@@ -61,7 +61,7 @@ function nested(value) {
 function outcomes(entry) {
   const rows = Object.entries(entry.counts).sort((a, b) => b[1] - a[1]);
   const total = rows.reduce((sum, [, count]) => sum + count, 0);
-  return plainTable("How the measurements ended", [
+  return plainTable("Outcomes of the measurements", [
     {label: "Status", text: ([status]) => status},
     {label: "Meaning", text: ([status]) => meaningOf(status)},
     {label: "Rows", number: true, text: ([, count]) => count.toLocaleString("en")},
@@ -75,7 +75,7 @@ function meaningOf(status) {
 
 /** @param {Entry} entry */
 function failures(entry) {
-  if (!entry.failures.length) return make("p", {class: "nothing"}, "Nothing failed.");
+  if (!entry.failures.length) return make("p", {class: "nothing"}, "No measurement failed.");
   const left = entry.failures_left_out ? `; ${entry.failures_left_out} more kinds are not listed` : "";
   return disclosure(`Failures by reason (${entry.failures.length}${left})`, plainTable("Failures by reason", [
     {label: "Status", text: row => row.status}, {label: "Detector", text: row => row.detector},

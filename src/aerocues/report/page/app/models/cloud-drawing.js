@@ -1,5 +1,5 @@
-/* Draws a cloud on a canvas: points with a depth for each pixel, then cameras and their true places. WebGL
-   would be no faster for some thousand points, and is missing on some phones and wherever pages are printed. */
+/* Draws a cloud on a canvas: points with a depth buffer, then cameras and their true positions. WebGL would not be
+   faster for a few thousand points, and it is not available on some phones and for printing. */
 
 import {shown} from "../basis/numbers.js";
 import {arrayOf} from "../basis/payload.js";
@@ -10,7 +10,7 @@ import {FONT} from "../shell/figure.js";
 /** @type {Buffers | null} */
 let buffers = null;
 
-/** Memory for the pixels of a canvas, shared by all, as they are drawn one after the other.
+/** Memory for the pixels of a canvas. All canvases share it, because they are drawn one after the other.
  * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
 function buffersFor(pen, width, height) {
   if (buffers?.width !== width || buffers.height !== height) {
@@ -58,7 +58,7 @@ function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project,
 
 const CORNERS = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
 
-/** Small pyramids that open in the direction of the view.
+/** Small pyramids that open in the viewing direction.
  * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {Numbers} centres @param {Numbers} rotations */
 function drawCameras(pen, {cloud, stage, colours}, project, centres, rotations) {
   const [focal, wide, tall] = cloud.view;
@@ -78,7 +78,7 @@ function drawCameras(pen, {cloud, stage, colours}, project, centres, rotations) 
   pen.stroke();
 }
 
-/** Rings where the cameras truly were, and lines to them from where the model has them.
+/** Rings at the true camera positions, and lines to them from the positions in the model.
  * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {Numbers} centres @param {Numbers} positions @param {number} density */
 function drawTruth(pen, {colours}, project, centres, positions, density) {
   const spot = [0, 0, 0];
@@ -107,7 +107,7 @@ function placeAt(all, i) {
   return [all[3 * i], all[3 * i + 1], all[3 * i + 2]];
 }
 
-/** How long a stretch is at the centre, and where east, north and up are.
+/** A scale bar for the centre of the cloud, and the directions east, north and up.
  * @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {number} width @param {number} height @param {number} density */
 function drawMeasure(pen, {cloud, stage, turn, colours}, width, height, density) {
   const project = projection(turn, stage, width, height);

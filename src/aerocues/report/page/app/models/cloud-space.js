@@ -1,4 +1,4 @@
-/* Clouds in space: where the points stand, how they are seen, and what colours they have. */
+/* Clouds in space: their extent, their projection and their colours. */
 
 import {onCividis, THEMES} from "../basis/colours.js";
 import {arrayOf} from "../basis/payload.js";
@@ -13,7 +13,7 @@ export function sortedKnown(values) {
   return Float32Array.from(values).filter(Number.isFinite).sort();
 }
 
-/** The stage of some clouds in one frame, without what lies far off.
+/** The extent of several clouds in one frame, without remote points.
  * @param {Cloud[]} clouds @returns {Stage3D} */
 export function stageOf(clouds) {
   const places = clouds.flatMap(cloud => [cloud.points, cloud.centres, cloud.positions].map(arrayOf));
@@ -47,14 +47,14 @@ export function projection({yaw, pitch, zoom}, {centre, radius}, width, height) 
   };
 }
 
-/** The first has no values: its colours are in the cloud.
+/** The first has no values: its colours are stored in the cloud.
  * @type {PointColour[]} */
 export const POINT_COLOURS = [
   {key: "image", label: "colours of the images", unit: () => "", values: () => new Float32Array(0), limits: [0, 1]},
   {key: "height", label: "height", unit: unitOf, values: cloud => arrayOf(cloud.points).filter((_, i) => i % 3 === 2), limits: [0.02, 0.98]},
   {key: "distance", label: "distance to the reference (C2C)", unit: unitOf, values: cloud => arrayOf(cloud.distances), limits: [null, 0.95]},
   {key: "error", label: "reprojection error", unit: () => "px", values: cloud => arrayOf(cloud.errors), limits: [null, 0.98]},
-  {key: "track", label: "images that see the point", unit: () => "images", values: cloud => arrayOf(cloud.track_lengths), limits: [0, 0.98]},
+  {key: "track", label: "number of images that see the point", unit: () => "images", values: cloud => arrayOf(cloud.track_lengths), limits: [0, 0.98]},
 ];
 
 /** @param {Cloud} cloud */
@@ -82,7 +82,7 @@ export function pixelOf(colour) {
   return pixel([1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16)));
 }
 
-/* The part of the scale that stands out from the ground: its dark end is lost on a dark one, its bright end on white. */
+/* The part of the scale that is visible on the background: not the dark end on dark, nor the bright end on white. */
 const VISIBLE = {light: [0, 0.9], dark: [0.3, 1]};
 const STEPS_OF_SCALE = 256;
 
@@ -92,7 +92,7 @@ export function scaleColours(theme) {
   return Array.from({length: STEPS_OF_SCALE}, (_, i) => onCividis(low + (high - low) * i / (STEPS_OF_SCALE - 1)));
 }
 
-/** One pixel a point; the unknown ones in the colour of lines.
+/** One pixel per point; points without a value get the colour of lines.
  * @param {Cloud} cloud @param {PointColour} kind @param {Span | null} limits @param {Theme} theme */
 export function pointPixels(cloud, kind, limits, theme) {
   const colours = arrayOf(cloud.colours);

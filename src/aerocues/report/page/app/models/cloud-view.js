@@ -1,4 +1,4 @@
-/* What is seen of the clouds: the two that were chosen, turned together. */
+/* The view of the clouds: the two that were chosen, turned together. */
 
 import {themeName, THEMES} from "../basis/colours.js";
 import {make} from "../basis/elements.js";
@@ -44,9 +44,9 @@ export function drawClouds() {
 /** What is drawn, and what is not.
  * @param {Cloud | null} cloud */
 export function cloudNote(cloud) {
-  if (!cloud) return "There is no cloud of this combination.";
+  if (!cloud) return "This combination has no cloud.";
   const drawn = arrayOf(cloud.colours).length / 3;
   const left = cloud.all_points - cloud.strays - drawn;
-  return [sentenceCase(cloud.why), left > 0 ? `${shown(drawn)} of ${counted(cloud.all_points, "point")} are drawn, chosen at random`
-    : `${counted(drawn, "point")} are drawn`, cloud.strays ? `${counted(cloud.strays, "point")} far off left out` : null].filter(Boolean).join("; ") + ".";
+  return [sentenceCase(cloud.why), left > 0 ? `${shown(drawn)} of ${counted(cloud.all_points, "point")} are drawn, sampled at random`
+    : `${counted(drawn, "point")} are drawn`, cloud.strays ? `${counted(cloud.strays, "point")} far away are not shown` : null].filter(Boolean).join("; ") + ".";
 }

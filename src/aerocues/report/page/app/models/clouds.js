@@ -1,4 +1,4 @@
-/* Two clouds side by side, turned together: by dragging, keys, buttons, or by themselves. */
+/* Two clouds side by side, turned together by dragging, keys, buttons or an animation. */
 
 import {themeName} from "../basis/colours.js";
 import {fileStem, saveFile} from "../basis/downloads.js";
@@ -19,11 +19,11 @@ const CLOUD_LAYERS = [
   {key: "truth", label: "True positions", shown: true},
 ];
 const TURNS = [
-  ["◀", "Turn to the left", "ArrowLeft"], ["▶", "Turn to the right", "ArrowRight"], ["▲", "See more from above", "ArrowUp"],
-  ["▼", "See more from the side", "ArrowDown"], ["+", "Nearer", "+"], ["−", "Farther", "-"],
+  ["◀", "Turn to the left", "ArrowLeft"], ["▶", "Turn to the right", "ArrowRight"], ["▲", "View more from above", "ArrowUp"],
+  ["▼", "View more from the side", "ArrowDown"], ["+", "Zoom in", "+"], ["−", "Zoom out", "-"],
 ];
 
-/** Clouds of combinations that pass the filter; all, if none does.
+/** Clouds of combinations that match the filter; all clouds if none does.
  * @param {Entry} entry */
 function cloudsToShow(entry) {
   const passes = currentFilter();
@@ -56,8 +56,8 @@ export function buildClouds(parent) {
   Object.assign(cloudView, {controls, layers, panels});
   parent.append(
     make("h3", {}, "Clouds"),
-    make("p", {class: "read"}, "Both are seen from the same place. Drag to turn, or use the arrow keys; + and − come nearer and go away, Home "
-      + "turns back. A ring marks where a camera truly was, and a line leads to it from where the model has it: long lines, a bent model."),
+    make("p", {class: "read"}, "Both clouds are seen from the same viewpoint. Drag or use the arrow keys to turn, + and − to zoom, Home to reset. "
+      + "A ring marks the true position of a camera, and a line connects it with its position in the model: long lines mean a bent model."),
     make("div", {class: "controls"}, [...Object.values(controls), ...layers].map(control => control.element), make("span", {class: "save"}, play, buttons)),
     legend, make("div", {class: "panels"}, panels.map(panel => panel.element)));
 }
@@ -93,7 +93,7 @@ function updateClouds() {
   drawClouds();
 }
 
-/* The same colours mean the same in both. */
+/* Both clouds share one colour scale. */
 function colourClouds() {
   const kind = POINT_COLOURS.find(each => each.key === cloudView.controls.colour.value()) ?? POINT_COLOURS[0];
   const shownClouds = cloudView.panels.flatMap(({cloud}) => (cloud ? [cloud] : []));

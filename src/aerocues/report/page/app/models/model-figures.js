@@ -1,4 +1,4 @@
-/* Figures of the models: distances between clouds, and what figures of pairs say of models. */
+/* Figures of the models: distances between clouds, and correlations with measurements of pairs. */
 
 import {seriesStyle, THEMES} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -17,10 +17,10 @@ const C2C_STATISTICS = [["median", "circle"], ["rms", "diamond"], ["p95", "line-
 /** @type {FigureSpec} */
 export const CLOUD_DISTANCES = {
   id: "c2c", title: "Distances between clouds",
-  read: "From each point to the nearest point of the reference’s cloud, and back (C2C, as CloudCompare measures it). A short way to the "
-    + "reference and a long way back: what there is is right, but much is missing.",
+  read: "Distance from each point to the nearest point of the reference cloud, and in reverse (C2C, as in CloudCompare). Short distances to the "
+    + "reference with long reverse distances mean that the points are correct but many are missing.",
   controls: [topControl([10, 20, 40], 20), scaleControl("log")],
-  available: entry => (entry.models?.values.cloud_distance_rms ? true : "No distances between clouds were measured."),
+  available: entry => (entry.models?.values.cloud_distance_rms ? true : "Distances between clouds were not measured."),
   draw({entry, option, theme, narrow}) {
     const models = modelsOf(entry);
     const known = shownModels(entry).filter(m => isKnown(models.values.cloud_distance_rms[m]) && models.combinations[m] !== models.reference);
@@ -29,7 +29,7 @@ export const CLOUD_DISTANCES = {
     const names = rows.map(m => safe(models.combinations[m]));
     const data = ["cloud", "reference"].flatMap((way, i) => C2C_STATISTICS.map(([statistic, symbol]) => ({
       type: "scatter", mode: "markers", y: names,
-      name: `${way === "cloud" ? "to the reference" : "back"}, ${statistic === "p95" ? "95th percentile" : statistic === "rms" ? "RMS" : "median"}`,
+      name: `${way === "cloud" ? "to the reference" : "reverse"}, ${statistic === "p95" ? "95th percentile" : statistic === "rms" ? "RMS" : "median"}`,
       x: rows.map(m => models.values[`${way}_distance_${statistic}`][m]),
       marker: {symbol, size: 9, color: THEMES[theme].series[i], line: {color: THEMES[theme].series[i], width: 2}},
       hovertemplate: "%{y}<br>%{x:.3g}<extra>%{fullData.name}</extra>",
@@ -55,7 +55,7 @@ function modelLabelWithUnit(entry) {
 /** @param {Entry} entry @returns {true | string} */
 function hasRelations(entry) {
   const found = entry.models?.relations;
-  if (!found) return "There are no models.";
+  if (!found) return "This dataset has no models.";
   return found.unavailable ? sentenceCase(`${found.unavailable}.`) : true;
 }
 
@@ -66,8 +66,8 @@ const MEASURE_OF_RELATION = {name: "measure", label: "Correlation", fallback: ()
 /** @type {FigureSpec} */
 export const OUTCOME_MATRIX = {
   id: "outcomes", title: "Do good matches make good models?",
-  read: "Correlation over the combinations of what was measured of pairs of images (rows) with what became of the models (columns). What "
-    + "describes a model is taken over those that succeeded, images over all: broken models have few points and a low error.",
+  read: "Correlation over the combinations between measurements of image pairs (rows) and properties of the models (columns). Registered images "
+    + "are correlated over all models, the other properties over successful ones: broken models have few points and a low error.",
   controls: [MEASURE_OF_RELATION], ignoresFilter: true, wide: true,
   available: hasRelations,
   draw({entry, option, theme, narrow}) {
@@ -77,19 +77,19 @@ export const OUTCOME_MATRIX = {
     return {
       ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: spearmans ? found.spearman : found.pearson, theme, narrow,
         what: spearmans ? "Spearman" : "Pearson"}),
-      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations, whatever the filter.`,
+      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations; the filter does not apply.`,
     };
   },
 };
 
 /** @type {FigureSpec} */
 export const OUTCOME_SCATTER = {
-  id: "outcome", title: "A figure of pairs against a model",
-  read: "One dot a combination. Choose what was measured of pairs, and what of models.",
+  id: "outcome", title: "Measurements of pairs against models",
+  read: "One dot per combination. Choose a measurement of pairs and a property of the models.",
   controls: [
-    {name: "x", label: "Across", options: entry => relationOptions(entry, "features"),
+    {name: "x", label: "Horizontal", options: entry => relationOptions(entry, "features"),
       fallback: entry => preferredOption(relationOptions(entry, "features"), ["recall_beyond_chance", "recall", "inliers"])},
-    {name: "y", label: "Up", options: entry => relationOptions(entry, "outcomes"),
+    {name: "y", label: "Vertical", options: entry => relationOptions(entry, "outcomes"),
       fallback: entry => preferredOption(relationOptions(entry, "outcomes"), ["points_3d"])},
     colourControl("detector"),
   ],
@@ -140,15 +140,15 @@ function outcomePoints({entry, option, theme, narrow}) {
     }),
     height: narrow ? 440 : 460,
     layout: scatterFrame({title: labelOf(xName), nticks: narrow ? 5 : 8}, {title: labelOf(yName)}, narrow),
-    note: found.length < fewest ? `${counted(found.length, "combination")}: too few to tell a correlation.`
+    note: found.length < fewest ? `${counted(found.length, "combination")}: too few for a correlation.`
       : `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
   };
 }
 
 const WITHOUT_MODEL = ["no_features", "no_verified_pair", "no_initial_pair", "no_model"];
 
-/** The value that counts for a relation, as in `scoring/outcomes.py`: no model is 0 images, a crash is unknown; what
- * describes a model is of those that succeeded; the reference has no distance to itself.
+/** The value that counts for a relation, as in `scoring/outcomes.py`: no model counts as 0 images, a crash is unknown;
+ * other properties are those of successful models; the reference has no distance to itself.
  * @param {Models} models @param {string} name @param {number} m */
 function outcomeOf(models, name, m) {
   const value = models.values[name]?.[m] ?? null;

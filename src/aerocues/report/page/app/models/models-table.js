@@ -1,4 +1,4 @@
-/* The table of all reconstructions: what became of each, failed ones with the reason. */
+/* The table of all reconstructions with their outcome; failed ones have a reason. */
 
 import {make} from "../basis/elements.js";
 import {CODES, remember} from "../basis/entries.js";
@@ -16,13 +16,13 @@ export function modelsOf(entry) {
 export const MODELS = {
   id: "reconstructions", title: "All reconstructions", prefix: "models.", natural: "place",
   columns: modelColumns, rows: shownModels,
-  read: () => "In order of success, then registered images, then 3D points. Never go by the reprojection error alone: broken models "
-    + "have the lowest. Rows with a dot succeeded; of a failed one the figures are of what there is.",
+  read: () => "Sorted by success, then registered images, then 3D points. Do not judge by the reprojection error alone: broken models "
+    + "have the lowest. A dot marks a success; values of failed reconstructions describe the incomplete model.",
   downFirst: (entry, {key}) => modelColumn(entry, key)?.better === "higher",
   isMarked: (entry, m) => modelsOf(entry).status[m] === "ok",
 };
 
-/** A number `m` is the position of a reconstruction; of those that pass the filter, the best first.
+/** Positions `m` of the reconstructions that match the filter, the best first.
  * @param {Entry} entry */
 export function shownModels(entry) {
   const models = modelsOf(entry);
@@ -47,7 +47,7 @@ export function modelColumn(entry, key) {
   return modelsOf(entry).columns.find(column => column.name === key) ?? null;
 }
 
-/** A figure with its unit, where that is not told by the number itself.
+/** A value with its unit, unless the text already contains it.
  * @param {ModelColumn} column @param {Value} value */
 function modelText({name, unit}, value) {
   if (/seconds/.test(name)) return duration(value);
@@ -75,12 +75,12 @@ export function modelColumns(entry) {
       value: m => models.message[m], text: m => models.message[m] ?? ""};
     /** @type {Column[]} */
     const columns = [
-      {key: "place", label: "Place", number: true, usual: true, title: "By success, registered images and 3D points",
+      {key: "place", label: "Rank", number: true, usual: true, title: "By success, registered images and 3D points",
         value: m => place.get(m) ?? null, text: m => shown(place.get(m) ?? null)},
       {key: "combination", label: "Combination", usual: true, title: "Detector-descriptor-norm-matcher",
         value: m => models.combinations[m], text: m => models.combinations[m]},
       {key: "rank", label: "Rank by CUES", number: true, usual: models.combinations.some((_, m) => rank(m) !== null),
-        title: "Place in the table of all combinations", value: rank, text: m => shown(rank(m))},
+        title: "Rank in the table of all combinations", value: rank, text: m => shown(rank(m))},
       {key: "status", label: "Status", usual: true, title: "How the reconstruction ended",
         value: m => models.status[m], text: m => models.status[m],
         cell: m => make("span", {title: models.statuses[models.status[m]]}, models.status[m].replaceAll("_", " "))},

@@ -1,4 +1,4 @@
-/* Section 7: 3D models: their figures, their clouds, and what the matches say of them. */
+/* Section 7: 3D models: their quality, their clouds, and how they relate to the matches. */
 
 import {make} from "../basis/elements.js";
 import {currentEntry} from "../basis/state.js";
@@ -20,8 +20,8 @@ let figures = [];
 export const MODELS_SECTION = {
   id: "models",
   title: "3D",
-  read: "The scene as each combination reconstructs it, with COLMAP: what became of the models, how they look, how far "
-    + "they are from each other, and whether good matches make good models.",
+  read: "The scene as COLMAP reconstructs it from the matches of each combination: the outcome of each reconstruction, its cloud, the distances "
+    + "between clouds, and whether good matches make good models.",
   build(body) {
     addColumnTable(frame, MODELS);
     frame.append(made);
@@ -47,15 +47,15 @@ export const MODELS_SECTION = {
 
 function howToReconstruct() {
   return [make("h3", {}, "No models yet"),
-    make("p", {class: "read"}, "This data set was not reconstructed. This makes a model with each of the best 20 combinations and "
-      + "stores what became of them with the results; then make the report anew:"),
+    make("p", {class: "read"}, "This dataset was not reconstructed. The command below makes a model with each of the best 20 combinations and "
+      + "stores the outcome with the results. Then make the report again:"),
     make("pre", {class: "citation", tabindex: "0"}, "aerocues reconstruct DATASET -o MODELS --from RESULTS --top 20")];
 }
 
-/** What is the same for all models.
+/** Settings that all models share.
  * @param {Models} models */
 function howMade(models) {
   const words = Object.entries(models.made).map(([name, value]) => `${name.replaceAll("_", " ")} ${value}`);
-  return [words.length ? `The same for all: ${words.join("; ")}.` : "",
-    models.reference ? `C2C: distances of points to the nearest point of the model of ${models.reference}, and back.` : ""].filter(Boolean).join(" ");
+  return [words.length ? `Same for all models: ${words.join("; ")}.` : "",
+    models.reference ? `C2C: distance from each point to the nearest point of the model of ${models.reference}; reverse: from the reference to the model.` : ""].filter(Boolean).join(" ");
 }

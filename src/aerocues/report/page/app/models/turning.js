@@ -1,4 +1,4 @@
-/* How clouds are turned. */
+/* Turning the clouds. */
 
 import {clamped} from "../basis/statistics.js";
 import {FRONT} from "./cloud-space.js";
@@ -39,7 +39,7 @@ export function listenToTurns(canvas) {
   canvas.addEventListener("pointerup", event => held.delete(event.pointerId));
   canvas.addEventListener("pointercancel", event => held.delete(event.pointerId));
   canvas.addEventListener("wheel", event => {
-    // A page that is scrolled over a cloud scrolls on; one that has the focus is meant.
+    // The wheel scrolls the page, unless the cloud has the focus.
     if (document.activeElement !== canvas && !event.ctrlKey) return;
     event.preventDefault();
     cloudView.turn.zoom = clamped(cloudView.turn.zoom * Math.exp(-event.deltaY / 500), 0.4, 12);
@@ -62,7 +62,7 @@ function spreadOf(held) {
   return Math.hypot(first.clientX - second.clientX, first.clientY - second.clientY) || 1;
 }
 
-/** On touch screens up and down scroll the page.
+/** On touch screens vertical movement scrolls the page.
  * @param {number} x @param {number} y @param {boolean} byTouch */
 function turnByDragging(x, y, byTouch) {
   const {turn} = cloudView;
@@ -70,7 +70,7 @@ function turnByDragging(x, y, byTouch) {
   if (!byTouch) turn.pitch = clamped(turn.pitch + y * 0.3, 0, 90);
 }
 
-/** Turns slowly by itself for as long as it is asked to: never unasked.
+/** Starts or stops the animation, which never starts by itself.
  * @param {boolean} wanted */
 export function setPlaying(wanted) {
   if (cloudView.playing === wanted) return;

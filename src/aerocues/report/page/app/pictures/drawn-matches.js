@@ -54,7 +54,7 @@ export async function drawPanel(panel) {
   canvas.setAttribute("aria-label", `Matches of ${picture.combination}. ${drawn}`);
 }
 
-/** Beside each other, or one above the other where that is larger.
+/** Places the images side by side, or one above the other if they are larger that way.
  * @param {Picture} picture @param {number} width */
 function placement(picture, width) {
   const [first, second] = [payload.images[picture.image_1], payload.images[picture.image_2]];
@@ -79,7 +79,7 @@ function at(place, image, x, y) {
   return [place.left[image] + (x + 0.5) * place.scale[image], place.top[image] + (y + 0.5) * place.scale[image]];
 }
 
-/** Draws what is switched on; tells in words what was drawn.
+/** Draws the selected layers and returns a description of what was drawn.
  * @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place */
 function drawLayers(pen, picture, place) {
   const words = [];
@@ -87,7 +87,7 @@ function drawLayers(pen, picture, place) {
   if (keypoints) words.push(drawKeypoints(pen, picture, place));
   const wanted = {1: inliers, 0: outliers};
   if (wanted[0] || wanted[1]) words.push(drawMatches(pen, picture, place, wanted));
-  return words.join(" ") || "No layer is switched on.";
+  return words.join(" ") || "No layer is selected.";
 }
 
 /** @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place */
@@ -128,7 +128,7 @@ function drawMatches(pen, picture, place, wanted) {
     + `${counted(share, "inlier")}, ${counted(drawn.length - share, "outlier")}.`;
 }
 
-/** Every n-th match, as asked for; by itself, so many that single ones can be told apart.
+/** Every n-th match as chosen; "auto" keeps few enough to see single matches.
  * @param {number} count */
 function matchStep(count) {
   const chosenStep = pictureView.controls.every.value();

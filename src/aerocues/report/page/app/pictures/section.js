@@ -14,8 +14,8 @@ import {layerControl, selectControl} from "../shell/controls.js";
 export const PICTURES_SECTION = {
   id: "pictures",
   title: "Pictures",
-  read: "The matches themselves, for two combinations on the same pair of images. Lines join what was matched; "
-    + "inliers agree with the estimated geometry, outliers do not.",
+  read: "The matches of two combinations on the same pair of images. Lines connect matched keypoints. Inliers agree with the "
+    + "estimated geometry, outliers do not.",
   available: entry => picturesOf(entry).length > 0,
   build(body) {
     buildPictures(body);
@@ -30,7 +30,7 @@ function picturesOf(entry) {
   return payload.pictures.filter(picture => picture.entry === entry.name);
 }
 
-/** Pictures of combinations that pass the filter; all, if none does.
+/** Pictures of combinations that match the filter; all pictures if none does.
  * @param {Entry} entry */
 function picturesToShow(entry) {
   const passed = new Set(shownIn(entry).map(a => entry.combinations[a]));
@@ -71,7 +71,7 @@ function picturedCombinations(entry) {
 
 /** @type {ControlSpec} */
 const EVERY = {name: "every", label: "Draw", fallback: () => "auto", options: () => [
-  {key: "auto", label: "as many matches as can be seen"}, {key: "1", label: "every match"},
+  {key: "auto", label: "a legible number of matches"}, {key: "1", label: "every match"},
   ...[2, 5, 10, 20, 50].map(n => ({key: String(n), label: `every ${n}th match`}))]};
 
 /** @param {HTMLElement} body */

@@ -1,4 +1,4 @@
-/* Curves along graded transformations: a panel a transformation, a line a combination. */
+/* Curves along graded transformations: one panel per transformation, one line per combination. */
 
 import {seriesStyle, SYMBOLS} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -10,8 +10,8 @@ import {columnOptions} from "../shell/controls.js";
 /** @type {FigureSpec} */
 export const CURVES = {
   id: "curves", title: "Along the transformations", wide: true,
-  read: "From easy to hard: how the value changes with the strength of the transformation. A flat line bears it "
-    + "well; a gap is a failure, and the end of a line before the others is one, too.",
+  read: "How the value changes with the strength of the transformation. A flat line means robust. A gap is a failure; "
+    + "so is a line that ends before the others.",
   controls: [
     {name: "column", label: "Value", options: entry => columnOptions(entry),
       fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision", "inliers"])},
@@ -20,7 +20,7 @@ export const CURVES = {
     {name: "failed", label: "Failures", fallback: () => "gap", options: () => [
       {key: "gap", label: "leave a gap"}, {key: "zero", label: "count as 0"}]},
   ],
-  available: entry => (entry.curves?.length ? true : "These images are no graded series, so there are no curves."),
+  available: entry => (entry.curves?.length ? true : "These images are not a graded series, so there are no curves."),
   draw(context) {
     const {entry, option, narrow, theme, shown: rows} = context;
     const column = option("column");
@@ -35,11 +35,11 @@ export const CURVES = {
       return top.map((a, line) => curveTrace(entry, curve, column, a, {i, line, theme, zero: option("failed") === "zero"}));
     });
     return {data, layout, height: lines * 230 + 50 + (narrow ? 16 * top.length : 16),
-      note: `Up: ${labelOf(column)}.`};
+      note: `Vertical axis: ${labelOf(column)}.`};
   },
 };
 
-/** Means where a curve has several pairs at one place.
+/** Means over the pairs at the same place of a curve.
  * @param {Entry} entry @param {Curve} curve @param {string} column @param {number} a @param {boolean} zero */
 function curvePoints(entry, curve, column, a, zero) {
   const values = pairValues(entry, column, a);

@@ -1,4 +1,4 @@
-/* Distribution over the pairs, a row a combination. */
+/* Distribution over the pairs, one row per combination. */
 
 import {safe} from "../basis/elements.js";
 import {firstColumn, mediansOf, pairLabel, pairValues} from "../basis/entries.js";
@@ -13,15 +13,15 @@ const QUALITY_COLUMNS = ["precision_beyond_chance", "precision", "f1_score", "in
 /** @type {FigureSpec} */
 export const DISTRIBUTIONS = {
   id: "spread", title: "From pair to pair", wide: true,
-  read: "A dot is one image pair; the shape shows where most of them lie, its line the median. A wide one is "
+  read: "Each dot is one image pair; the shape shows their distribution, and its line the median. A wide shape means "
     + "good on some pairs and poor on others. Failed pairs have no dot.",
   controls: [
     {name: "column", label: "Value", options: entry => columnOptions(entry),
       fallback: entry => firstColumn(entry, QUALITY_COLUMNS)},
     {name: "kind", label: "As", fallback: () => "violin", options: () => [
       {key: "violin", label: "violins"}, {key: "box", label: "boxes"}, {key: "strip", label: "dots only"}]},
-    {name: "order", label: "Best by", fallback: () => "score", options: () => [
-      {key: "score", label: "CUES"}, {key: "median", label: "this value's median"}]},
+    {name: "order", label: "Order by", fallback: () => "score", options: () => [
+      {key: "score", label: "CUES"}, {key: "median", label: "median of this value"}]},
     topControl([10, 20, 40], 10), scaleControl(),
   ],
   draw(context) {
@@ -29,7 +29,7 @@ export const DISTRIBUTIONS = {
     const column = option("column");
     const top = orderedBy(context, column, option("order")).slice(0, Number(option("top")));
     const points = pointsOfPairs(entry, column, top, option("scale") === "log");
-    if (!points.x.length) return {empty: `None of these combinations has a value of ${labelOf(column)}.`};
+    if (!points.x.length) return {empty: `None of these combinations has a value for ${labelOf(column)}.`};
     const bounded = isShare(column);
     return {
       data: spreadTraces(points, option("kind"), labelOf(column), colours),
@@ -67,7 +67,7 @@ function pointsOfPairs(entry, column, rows, positive) {
   return {x, y, ids};
 }
 
-/** One trace for all rows, but for violins: within a trace Plotly gives them different widths.
+/** One trace for all rows, except for violins: Plotly gives violins of one trace different widths.
  * @param {Points} points @param {string} kind @param {string} name @param {Colours} colours @returns {Trace[]} */
 function spreadTraces(points, kind, name, colours) {
   if (kind !== "violin") return [spreadTrace(points, kind, name, colours)];
@@ -96,8 +96,8 @@ function spreadTrace({x, y, ids}, kind, name, colours) {
 /** @param {Entry} entry @param {number[]} rows */
 function failuresNote(entry, rows) {
   const failed = rows.filter(a => (entry.score.success_rate[a] ?? 1) < 1);
-  if (!failed.length) return "None of these failed on any pair.";
-  const told = failed.slice(0, 6).map(a => `${entry.combinations[a]} ${percent(entry.score.success_rate[a])}`);
+  if (!failed.length) return "All of these succeeded on every pair.";
+  const first = failed.slice(0, 6).map(a => `${entry.combinations[a]} ${percent(entry.score.success_rate[a])}`);
   const more = failed.length > 6 ? ` and ${failed.length - 6} more` : "";
-  return `Not on all pairs: ${told.join(", ")}${more}.`;
+  return `Success rates below 100 %: ${first.join(", ")}${more}.`;
 }

@@ -1,4 +1,4 @@
-/* What the ground truth says, beside what the inliers say. */
+/* Measures from the ground truth against measures from the inliers. */
 
 import {firstColumn, meansWithFailures} from "../basis/entries.js";
 import {isGroundTruth, isKnown, labelOf} from "../basis/numbers.js";
@@ -24,18 +24,18 @@ function inlierColumns(entry) {
 
 /** @param {Entry} entry */
 function hasTruth(entry) {
-  return truthColumns(entry).length ? true : "There is no ground truth for these images.";
+  return truthColumns(entry).length ? true : "These images have no ground truth.";
 }
 
 /** @type {FigureSpec} */
 export const TRUTH = {
   id: "truth", title: "Ground truth against inliers",
-  read: "Across: what can be measured without ground truth. Up: what is true. On the dotted line both say the same; "
-    + "far below it, inliers deceive. Failed pairs count as 0 in both.",
+  read: "Horizontal: a measure without ground truth. Vertical: the true value. On the dotted line both agree; far below it, "
+    + "inliers are misleading. Failed pairs count as 0 in both.",
   controls: [
-    {name: "x", label: "Across", options: entry => columnOptions(entry, name => !isGroundTruth(name)),
+    {name: "x", label: "Horizontal", options: entry => columnOptions(entry, name => !isGroundTruth(name)),
       fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision"])},
-    {name: "y", label: "Up", options: entry => columnOptions(entry, isGroundTruth),
+    {name: "y", label: "Vertical", options: entry => columnOptions(entry, isGroundTruth),
       fallback: entry => firstColumn(entry, ["gt_precision@3"])},
     colourControl("descriptor"),
   ],
@@ -60,13 +60,13 @@ function sameLine({colours}, drawn, x, y) {
 
 /** @type {FigureSpec} */
 export const TRUTH_MATRIX = {
-  id: "truthmatrix", title: "What tells the truth",
-  read: "Spearman’s correlation over the combinations that pass the filter: near 1, a measure that needs no ground truth "
-    + "ranks as the ground truth does. Failed pairs count as 0.",
+  id: "truthmatrix", title: "Which measures agree with the ground truth",
+  read: "Spearman’s correlation over the combinations that match the filter. Near 1, a measure without ground truth ranks the "
+    + "combinations as the ground truth does. Failed pairs count as 0.",
   available: hasTruth,
   draw({entry, shown: rows, theme, narrow}) {
     const [truths, others] = [truthColumns(entry), inlierColumns(entry)];
-    if (rows.length < 3) return {empty: "A correlation needs three combinations or more."};
+    if (rows.length < 3) return {empty: "A correlation needs at least three combinations."};
     const z = others.map(other => truths.map(truth => correlationOfMeans(entry, rows, other, truth)));
     return matrixFigure({x: truths.map(labelOf), y: others.map(labelOf), z, theme, narrow, what: "Spearman"});
   },

@@ -38,7 +38,7 @@ export function scatterDraw(context, xName, yName, {log, band, measure = measure
 
 const BINS = 60;
 
-/** All pairs of all combinations as counts on a grid: tens of thousands of dots would hide each other.
+/** All pairs of all combinations as counts on a grid, because tens of thousands of dots would overlap.
  * @param {FigureContext} context @param {string} xName @param {string} yName @param {boolean} log
  * @param {{xaxis: Axis, yaxis: Axis}} axes @param {number} height @returns {Drawn} */
 function densityOfPairs({entry, shown: rows, narrow}, xName, yName, log, axes, height) {
@@ -80,7 +80,7 @@ const POINTS = {name: "points", label: "Points", fallback: () => "means",
 /** @type {FigureSpec} */
 export const PRECISION_RECALL = {
   id: "pr", title: "Precision against recall",
-  read: "Up: the share of the matches that are right. Across: the share of the keypoints that find one. Top right "
+  read: "Vertical: share of matches that are correct. Horizontal: share of keypoints with a correct match. Top right "
     + "is best.",
   controls: [colourControl("descriptor"), POINTS],
   available: entry => (precisionRecall(entry) ? true : "Precision and recall were not measured."),
@@ -99,8 +99,8 @@ function precisionRecall(entry) {
 /** @type {FigureSpec} */
 export const INLIERS_MATCHES = {
   id: "im", title: "Inliers against matches",
-  read: "Many matches are worth little if few are right: on the upper line all of them are inliers, on the lower "
-    + "one a tenth. Both axes are logarithmic.",
+  read: "Many matches are of little use if few are correct. On the upper line all matches are inliers, on the lower "
+    + "line one in ten. Both axes are logarithmic.",
   controls: [colourControl("detector"), POINTS],
   available: entry => (hasColumn(entry, "inliers") && hasColumn(entry, "matches") ? true : "Inliers and matches were not measured."),
   draw: context => scatterDraw(context, "matches", "inliers", {log: true, band: shareLines}),

@@ -1,4 +1,4 @@
-/* Section 3: quality, pair by pair, against each other, along transformations, against the truth. */
+/* Section 3: quality by pair, by combination, along transformations and against the ground truth. */
 
 import {CURVES} from "./curves.js";
 import {DISTRIBUTIONS} from "./distributions.js";
@@ -10,8 +10,8 @@ import {addFigure} from "../shell/figure.js";
 export const QUALITY_SECTION = {
   id: "quality",
   title: "Quality",
-  read: "How good the matches are: how much that varies from pair to pair, how it falls with the difficulty "
-    + "of the images, and what the ground truth says where there is one.",
+  read: "How good the matches are, how much this varies between pairs, how it decreases with more difficult images, "
+    + "and, where available, how it compares with the ground truth.",
   build(body) {
     for (const spec of [DISTRIBUTIONS, PRECISION_RECALL, INLIERS_MATCHES, CURVES, TRUTH, TRUTH_MATRIX]) {
       addFigure(body, spec);

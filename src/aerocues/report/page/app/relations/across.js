@@ -1,4 +1,4 @@
-/* Across data sets and machines. */
+/* Across datasets and machines. */
 
 import {seriesStyle} from "../basis/colours.js";
 import {saveCsv} from "../basis/downloads.js";
@@ -10,12 +10,12 @@ import {payload} from "../basis/payload.js";
 import {scaleControl} from "../shell/controls.js";
 import {lowEnd, matrixFigure} from "../shell/matrix.js";
 
-const NO_COMPARISON = "There is one ranking only; give several results folders to compare them.";
+const NO_COMPARISON = "There is only one ranking. To compare rankings, make the report from several results folders.";
 
 /** @type {FigureSpec} */
 export const RANKINGS_MATRIX = {
   id: "rankings", title: "Agreement of the rankings", ignoresFilter: true,
-  read: "Rank correlation of every two data sets or machines over the combinations they share: near 1, what is best on one is best on the other.",
+  read: "Rank correlation between datasets or machines over the combinations that they share. Near 1, the best on one are also the best on the other.",
   controls: [{name: "of", label: "By", fallback: () => "spearman", options: () => [
     {key: "spearman", label: "Spearman"}, {key: "kendall", label: "Kendall’s tau"}]}],
   draw({option, theme, narrow}) {
@@ -31,17 +31,17 @@ export const RANKINGS_MATRIX = {
 
 /** @type {FigureSpec} */
 export const SLOPES = {
-  id: "slopes", title: "Ranks from data set to data set", tall: true,
-  read: "A line is a combination, its height the rank on each data set, 1 at the top. Flat lines hold everywhere; the best by mean score are shown.",
+  id: "slopes", title: "Ranks by dataset", tall: true,
+  read: "Each line is a combination, with its rank on each dataset; 1 is at the top. A flat line means the same rank everywhere. The best by mean score are shown.",
   controls: [{name: "top", label: "Combinations", fallback: () => "10",
-    options: () => [7, 10, 14].map(size => ({key: String(size), label: `most versatile ${size}`}))},
+    options: () => [7, 10, 14].map(size => ({key: String(size), label: `${size} most versatile`}))},
   scaleControl("log")],
   acrossEntries: true,
   draw(context) {
     const {option, theme, narrow} = context;
     if (!payload.comparison) return {empty: NO_COMPARISON};
     const top = versatile(payload.comparison).slice(0, Number(option("top")));
-    if (!top.length) return {empty: "No combination passes the filter."};
+    if (!top.length) return {empty: "No combination matches the filter."};
     const labels = payload.comparison.names.map(name => safe(name).replace(" (", "<br>("));
     const data = top.map((row, i) => {
       const {color, symbol} = seriesStyle(theme, i);
@@ -58,7 +58,7 @@ export const SLOPES = {
   },
 };
 
-/** Rows of the comparison that pass the filter, in some entry at least.
+/** Rows of the comparison that match the filter in at least one entry.
  * @param {Comparison} comparison */
 function versatile(comparison) {
   const passed = new Set(entries.flatMap(entry => shownIn(entry).map(a => entry.combinations[a])));
@@ -75,7 +75,7 @@ export function versatilityTable() {
   const columns = [
     {label: "Combination", text: row => row.alternative},
     {label: "Mean CUES", number: true, text: row => fixed(row.mean)},
-    {label: "Least", number: true, text: row => fixed(row.min)},
+    {label: "Lowest", number: true, text: row => fixed(row.min)},
     {label: "Spread", number: true, text: row => fixed(row.spread)},
     {label: "Mean rank", number: true, text: row => shown(row.mean_rank)},
     {label: "Worst rank", number: true, text: row => shown(row.worst_rank)},
@@ -83,9 +83,9 @@ export function versatilityTable() {
       text: (/** @type {Versatility} */ row) => (isKnown(row.scores[i]) ? `${fixed(row.scores[i])} (${shown(row.ranks[i])})` : NONE)})),
   ];
   return [make("h3", {}, "Versatility"),
-    make("p", {class: "read"}, "Who is good everywhere: the best mean score first; the spread is the largest minus the smallest. Beside a score stands its rank."),
+    make("p", {class: "read"}, "Combinations that are good on all datasets, the best mean score first. The spread is the largest minus the smallest score; ranks are in parentheses."),
     make("div", {class: "controls"}, make("span", {class: "save"}, make("button", {type: "button", class: "quiet",
-      "aria-label": "Save the table of versatility as CSV", onclick: () => saveCsv("versatility",
+      "aria-label": "Save the versatility table as CSV", onclick: () => saveCsv("versatility",
         ["combination", "mean", "min", "spread", "mean_rank", "worst_rank", ...labels],
         rows.map(row => [row.alternative, row.mean, row.min, row.spread, row.mean_rank, row.worst_rank, ...row.scores]))}, "CSV"))),
     plainTable(`The ${Math.min(rows.length, VERSATILE_ROWS)} most versatile of ${rows.length}`, columns, rows.slice(0, VERSATILE_ROWS))];

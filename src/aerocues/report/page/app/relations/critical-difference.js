@@ -1,4 +1,4 @@
-/* The critical-difference diagram of Demsar: mean ranks, and bars over what cannot be told apart. */
+/* The critical-difference diagram of Demsar: mean ranks, and bars over groups without significant difference. */
 
 import {safe} from "../basis/elements.js";
 import {counted, shown} from "../basis/numbers.js";
@@ -6,15 +6,15 @@ import {counted, shown} from "../basis/numbers.js";
 /** @type {FigureSpec} */
 export const CRITICAL = {
   id: "critical", title: "Critical difference", ignoresFilter: true,
-  read: "Mean ranks of the best over the pairs (or scenes), 1 at the left: those under one bar cannot be told apart by Nemenyi’s test. "
-    + "This asks each pair alone, so the order can differ from that by CUES.",
+  read: "Mean ranks of the best combinations over the pairs (or scenes), with 1 on the left. Combinations under one bar do not differ significantly "
+    + "by Nemenyi’s test. Each pair is ranked separately, so the order can differ from that by CUES.",
   draw({entry, colours, narrow}) {
     const found = entry.validation.critical_difference;
     if (found.unavailable !== undefined) return {empty: found.unavailable};
     const rows = found.alternatives.map(safe);
     const ranks = found.mean_ranks;
     const bars = found.groups.map(([first, last], i) => ({
-      type: "scatter", mode: "lines", name: i ? "not in the table" : "cannot be told apart", showlegend: i === 0,
+      type: "scatter", mode: "lines", name: i ? "not in the table" : "no significant difference", showlegend: i === 0,
       x: [ranks[first], ranks[last]], y: [-1 - i * 0.7, -1 - i * 0.7], hoverinfo: "skip",
       line: {color: colours.series[1], width: 5}}));
     const stems = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",

@@ -1,4 +1,4 @@
-/* Section 5: how far the ranking can be trusted, and how it carries over. */
+/* Section 5: how robust the ranking is, and whether it carries over. */
 
 import {elementOf, figuresList, make} from "../basis/elements.js";
 import {fixed, percent, shown} from "../basis/numbers.js";
@@ -13,8 +13,8 @@ import {addFigure} from "../shell/figure.js";
 export const RELATIONS_SECTION = {
   id: "relations",
   title: "Relations",
-  read: "How far the ranking can be trusted: what depends on choices made in the scoring, what other methods of "
-    + "decision make of the same numbers, and whether it carries over to other images and machines.",
+  read: "How robust the ranking is: its sensitivity to the settings of the score, its agreement with other decision methods, "
+    + "and whether it carries over to other images and machines.",
   build(body) {
     for (const spec of [CRITERIA_MATRIX, SENSITIVITY, AGREEMENT, CRITICAL, SLOPES, RANKINGS_MATRIX]) addFigure(body, spec);
     body.append(make("div", {id: "reversal", class: "figure"}), make("div", {id: "versatility", class: "figure wide"}));
@@ -30,12 +30,12 @@ export const RELATIONS_SECTION = {
 /** @param {Entry} entry */
 function reversalWords(entry) {
   const found = entry.validation.rank_reversal;
-  const head = [make("h3", {}, "When some are left out"),
-    make("p", {class: "read"}, "Scores belong to what is compared: a part of the combinations is left out at random, and the rest is ranked again.")];
-  if (!found) return [...head, make("p", {class: "nothing"}, "A single combination cannot be ranked again.")];
+  const head = [make("h3", {}, "Rank reversal"),
+    make("p", {class: "read"}, "A score depends on which combinations are compared. Here some combinations are removed at random and the others are ranked again.")];
+  if (!found) return [...head, make("p", {class: "nothing"}, "This needs more than one combination.")];
   return [...head, figuresList([
-    ["Left out each time", percent(found.share)], ["Rounds", shown(found.rounds)],
-    ["The best stays the best in", percent(found.best_kept)],
-    ["Others move by", `${shown(found.mean_shift, 2)} places on average, ${shown(found.largest_shift)} at most`],
-    ["Correlation with the whole", `${fixed(found.spearman_mean, 4)} on average, ${fixed(found.spearman_lowest, 4)} at least`]])];
+    ["Removed each time", percent(found.share)], ["Rounds", shown(found.rounds)],
+    ["The best stays first in", percent(found.best_kept)],
+    ["Others move by", `${shown(found.mean_shift, 2)} ranks on average, ${shown(found.largest_shift)} at most`],
+    ["Correlation with the full ranking", `${fixed(found.spearman_mean, 4)} on average, ${fixed(found.spearman_lowest, 4)} at least`]])];
 }

@@ -1,4 +1,4 @@
-/* Correlations of criteria and of rankings under other choices. */
+/* Correlations of criteria, and of rankings under other settings. */
 
 import {fixed, labelOf, listed} from "../basis/numbers.js";
 import {lowEnd, lowestOf, matrixFigure} from "../shell/matrix.js";
@@ -6,9 +6,9 @@ import {lowEnd, lowestOf, matrixFigure} from "../shell/matrix.js";
 /** @type {FigureSpec} */
 export const CRITERIA_MATRIX = {
   id: "criteria", title: "Correlation of the criteria", ignoresFilter: true,
-  read: "Pearson’s, over all combinations, of the normalised values (more is better in all of them): two criteria near 1 say the same and count double; "
-    + "near -1, one is paid for with the other.",
-  available: entry => (entry.validation.criteria_correlation.names.length ? true : "There is nothing to correlate."),
+  read: "Pearson’s correlation of the normalised values (higher is better in all) over all combinations. Two criteria near 1 carry the same information "
+    + "and count double; near -1, one improves at the cost of the other.",
+  available: entry => (entry.validation.criteria_correlation.names.length ? true : "There are no criteria to correlate."),
   draw({entry, theme, narrow}) {
     const {names: criteria, correlation} = entry.validation.criteria_correlation;
     const labels = criteria.map(labelOf);
@@ -18,16 +18,16 @@ export const CRITERIA_MATRIX = {
 
 /** @type {{key: "criterion_left_out" | "alpha" | "aggregation", label: string}[]} */
 const VARIANTS = [
-  {key: "criterion_left_out", label: "each criterion left out"},
+  {key: "criterion_left_out", label: "leave one criterion out"},
   {key: "alpha", label: "alpha"},
   {key: "aggregation", label: "aggregation of the weights"},
 ];
 
 /** @type {FigureSpec} */
 export const SENSITIVITY = {
-  id: "sensitivity", title: "Sensitivity to choices", ignoresFilter: true,
-  read: "Spearman’s correlation of the whole ranking under other choices: near 1, the choice hardly matters.",
-  controls: [{name: "of", label: "Choice of", fallback: () => "criterion_left_out",
+  id: "sensitivity", title: "Sensitivity to the settings", ignoresFilter: true,
+  read: "Spearman’s correlation between the rankings under different settings. Near 1, the setting hardly matters.",
+  controls: [{name: "of", label: "Setting", fallback: () => "criterion_left_out",
     options: () => VARIANTS}],
   draw({entry, option, theme, narrow}) {
     const choice = VARIANTS.find(({key}) => key === option("of")) ?? VARIANTS[0];
@@ -37,8 +37,8 @@ export const SENSITIVITY = {
 
 /** @type {FigureSpec} */
 export const AGREEMENT = {
-  id: "agreement", title: "Other methods of decision", ignoresFilter: true,
-  read: "The same values and weights ranked by methods that others use: near 1, the ranking does not hang on CUES.",
+  id: "agreement", title: "Other decision methods", ignoresFilter: true,
+  read: "The same values and weights, ranked by other established methods. Near 1, the ranking does not depend on CUES.",
   draw({entry, theme, narrow}) {
     const found = entry.validation.agreement;
     return found.unavailable === undefined ? variantsFigure(entry, found, theme, narrow) : {empty: found.unavailable};
@@ -53,8 +53,8 @@ function variantsFigure(entry, {names: variants, correlation, best}, theme, narr
   const others = [...new Set(best)].filter(name => name !== winner);
   const choices = (/** @type {string} */ name) => listed(words.filter((_, i) => best[i] === name));
   const note = others.length
-    ? `Another one comes first: ${others.map(name => `${choices(name)}: ${name}`).join("; ")}.`
-    : `${winner} is the best in all of them. Lowest correlation: ${fixed(lowestOf(correlation), 2)}.`;
+    ? `Other winners: ${others.map(name => `${choices(name)}: ${name}`).join("; ")}.`
+    : `${winner} is the best in all of them. The lowest correlation is ${fixed(lowestOf(correlation), 2)}.`;
   return {...figure, note};
 }
 

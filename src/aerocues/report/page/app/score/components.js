@@ -1,4 +1,4 @@
-/* What each detector, descriptor, norm or matcher is worth, over all that it was combined with. */
+/* The scores of each detector, descriptor, norm or matcher over all its combinations. */
 
 import {safe} from "../basis/elements.js";
 import {counted, fixed} from "../basis/numbers.js";
@@ -7,11 +7,11 @@ import {categoryAxis, heightOfRows} from "../shell/axes.js";
 /** @type {FigureSpec} */
 export const COMPONENTS = {
   id: "components", title: "Scores by method", ignoresFilter: true,
-  read: "The bar reaches from the mean score of all combinations with a method to the best of them: a long bar "
-    + "means that much depends on the company. All combinations count, whatever the filter.",
+  read: "The bar goes from the mean score of all combinations with a method to the best of them. A long bar means "
+    + "that the score depends on what the method is combined with. The filter does not apply.",
   controls: [{name: "of", label: "By", options: entry => Object.keys(entry.validation.hierarchies)
     .map(key => ({key, label: key.replaceAll("_", " ").replaceAll("-", " and ")}))}],
-  available: entry => (Object.keys(entry.validation.hierarchies).length ? true : "There are no scores by method."),
+  available: entry => (Object.keys(entry.validation.hierarchies).length ? true : "No scores by method were computed."),
   draw({entry, colours, option}) {
     const rows = entry.validation.hierarchies[option("of")].slice(0, 40);
     const labels = rows.map(row => safe(row.name));

@@ -1,4 +1,4 @@
-/* Detector x descriptor, a panel for each norm and matcher. */
+/* Detector x descriptor, one panel per norm and matcher. */
 
 import {CIVIDIS, isBrightOnScale, onCividis} from "../basis/colours.js";
 import {makeSvg, withTips} from "../basis/elements.js";
@@ -17,14 +17,14 @@ import {FONT, widestText} from "../shell/figure.js";
 /** @type {FigureSpec} */
 export const HEAT_MAP = {
   id: "heat", title: "Detector and descriptor", wide: true,
-  read: "A panel for each norm and matcher; brighter is better. Hatched cells cannot run or mean nothing (the "
-    + "reason is shown on hover); empty ones were not measured or do not pass the filter.",
+  read: "One panel per norm and matcher; brighter is better. Hatched cells cannot run or are meaningless (hover "
+    + "for the reason). Empty cells were not measured or do not match the filter.",
   controls: [{name: "value", label: "Value", options: measureOptions, fallback: () => "score"}],
   draw(context) {
     const {entry, narrow, shown: rows, width} = context;
     const measure = measureNamed(entry, context.option("value"));
     const known = rows.map(a => measure.values[a]).filter(isKnown);
-    if (!known.length) return {empty: `None of these combinations has a value of ${measure.label}.`};
+    if (!known.length) return {empty: `None of these combinations has a value for ${measure.label}.`};
     const panels = heatPanels(entry, rows);
     /** @type {Heat} */
     const heat = {
@@ -52,7 +52,7 @@ function heatPanels(entry, rows) {
 
 const HEAT_LABEL = 11;
 
-/** Sizes in pixels: of a cell, of the labels and of a panel, which holds its title and both labels.
+/** Sizes in pixels of a cell, of the labels and of a panel with its title and labels.
  * @param {Heat} heat @param {number} width @param {boolean} narrow */
 function heatSize({detectors, descriptors, panels, columns}, width, narrow) {
   const left = widestText(detectors, HEAT_LABEL) + 8;
@@ -87,7 +87,7 @@ function heatDrawing(context, heat, size) {
   return withTips(svg);
 }
 
-/** The colours with their ends and middle, the better end at the right.
+/** The colour scale with the values at its ends and middle; the better end is on the right.
  * @param {Heat} heat @param {HeatSize} size @param {Colours} colours */
 function scaleBar({measure, bounds: [low, high]}, {width}, colours) {
   const wide = Math.min(320, width - 60);
@@ -124,7 +124,7 @@ function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
   const a = heat.at.get(name);
   if (a === undefined) {
     const reason = Object.hasOwn(payload.incompatible, name) ? payload.incompatible[name] : null;
-    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\nleft out: ${reason}`}) : [];
+    return reason ? makeSvg("rect", {...box, fill: "url(#hatch)", opacity: 0.7, "data-tip": `${name}\nexcluded: ${reason}`}) : [];
   }
   const value = heat.measure.values[a];
   const tip = heatTip(entry, heat.measure, a);
@@ -140,7 +140,7 @@ function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
 function heatTip(entry, measure, a) {
   const rank = isKnown(entry.score.rank[a]) ? `\nrank ${entry.score.rank[a]}` : "";
   return `${entry.combinations[a]}\n${measure.label}: ${valueText(measure.key, measure.values[a])}${rank}`
-    + `\nsucceeds on ${percent(entry.score.success_rate[a])} of the pairs`;
+    + `\nsuccess: ${percent(entry.score.success_rate[a])} of the pairs`;
 }
 
 /** At most four characters.

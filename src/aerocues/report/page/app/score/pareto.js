@@ -1,4 +1,4 @@
-/* Speed against quality, or any two measures, with the front of what nothing beats in both. */
+/* Speed against quality, or any two measures, with the Pareto front. */
 
 import {safe} from "../basis/elements.js";
 import {measureNamed, measureOf} from "../basis/entries.js";
@@ -19,12 +19,12 @@ function firstMeasure(entry, keys) {
 /** @type {FigureSpec} */
 export const PARETO = {
   id: "pareto", title: "Speed against quality", wide: true,
-  read: "A point is a combination, by its means over the pairs that did not fail. Points on the line are beaten by none in both "
-    + "measures at once. Hollow ones failed too often to count there.",
+  read: "Each point is a combination, by its means over the successful pairs. No combination is better in both measures than a "
+    + "point on the line. Hollow points failed too often to be on it.",
   controls: [
-    {name: "x", label: "Across", options: measureOptions,
+    {name: "x", label: "Horizontal", options: measureOptions,
       fallback: entry => entry.validation.pareto.criteria[0] ?? firstMeasure(entry, SPEEDS)},
-    {name: "y", label: "Up", options: measureOptions,
+    {name: "y", label: "Vertical", options: measureOptions,
       fallback: entry => entry.validation.pareto.criteria[1] ?? firstMeasure(entry, QUALITIES)},
     colourControl(),
   ],
@@ -44,12 +44,12 @@ export const PARETO = {
         ...scatterFrame(measureAxis(x, drawn), measureAxis(y, drawn), narrow),
         annotations: front.length ? frontLabels(context, drawn, front, x, y) : [],
       },
-      note: `Not beaten in both: ${front.map(a => entry.combinations[a]).join(", ")}.`,
+      note: `Best trade-offs: ${front.map(a => entry.combinations[a]).join(", ")}.`,
     };
   },
 };
 
-/** Times and counts that reach over more than a factor of 10 are better seen on a logarithmic axis.
+/** Times and counts that span more than a factor of 10 get a logarithmic axis.
  * @param {Measure} measure @param {number[]} rows @returns {Axis} */
 function measureAxis(measure, rows) {
   const values = rows.map(a => measure.values[a]).filter(isKnown);
@@ -79,7 +79,7 @@ function paretoFront(rows, x, y) {
   });
 }
 
-/** Names of a few points on the front, so far apart that they do not cover each other.
+/** Names of a few points on the front, far enough apart not to overlap.
  * @param {FigureContext} context @param {number[]} drawn @param {number[]} front @param {Measure} x @param {Measure} y */
 function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
   /** @type {(measure: Measure, a: number) => number} */

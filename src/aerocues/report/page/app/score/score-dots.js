@@ -1,4 +1,4 @@
-/* The best few with their intervals. */
+/* The best combinations with their intervals. */
 
 import {safe} from "../basis/elements.js";
 import {isBinary, rankText, withRank} from "../basis/entries.js";
@@ -9,8 +9,8 @@ import {topControl} from "../shell/controls.js";
 /** @type {FigureSpec} */
 export const SCORE_DOTS = {
   id: "dots", title: "The best, with intervals", tall: true,
-  read: "A dot is the score, its bar the 95 % interval over the pairs. Filled: cannot be told from the best; "
-    + "hollow: significantly worse. Intervals may overlap although a difference is certain, as all share the pairs.",
+  read: "The dot is the score, the bar its 95 % interval over the pairs. Filled: not significantly different from the best; "
+    + "hollow: significantly worse. Intervals can overlap although the difference is significant, because all combinations share the pairs.",
   controls: [topControl()],
   draw({entry, shown: rows, colours, option}) {
     const scored = withRank(entry, rows);
@@ -19,9 +19,9 @@ export const SCORE_DOTS = {
     const equal = new Set([entry.score.best, ...entry.score.indistinguishable]);
     /** @type {[name: string, belongs: (a: number) => boolean, series: number, symbol: string][]} */
     const groups = [
-      ["L2, cannot be told from the best", a => equal.has(a) && !isBinary(entry, a), 0, "circle"],
+      ["L2, not significantly different", a => equal.has(a) && !isBinary(entry, a), 0, "circle"],
       ["L2, worse", a => !equal.has(a) && !isBinary(entry, a), 0, "circle-open"],
-      ["Hamming, cannot be told from the best", a => equal.has(a) && isBinary(entry, a), 1, "diamond"],
+      ["Hamming, not significantly different", a => equal.has(a) && isBinary(entry, a), 1, "diamond"],
       ["Hamming, worse", a => !equal.has(a) && isBinary(entry, a), 1, "diamond-open"],
     ];
     const data = groups.map(([name, belongs, series, symbol]) =>

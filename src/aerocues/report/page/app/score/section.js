@@ -11,8 +11,8 @@ import {addFigure} from "../shell/figure.js";
 export const SCORE_SECTION = {
   id: "score",
   title: "CUES",
-  read: "Where good scores come from: which detector goes with which descriptor, how far the best are apart, "
-    + "what the criteria weigh, and what speed costs in quality.",
+  read: "Where good scores come from: which detector suits which descriptor, how much the best differ, "
+    + "the weights of the criteria, and the trade-off between speed and quality.",
   build(body) {
     for (const spec of [HEAT_MAP, SCORE_DOTS, WEIGHTS, COMPONENTS, PARETO]) addFigure(body, spec);
   },

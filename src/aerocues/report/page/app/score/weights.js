@@ -1,4 +1,4 @@
-/* What the criteria weigh, by each method. */
+/* The weights of the criteria by each method. */
 
 import {seriesStyle, SYMBOLS} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -8,9 +8,9 @@ import {categoryAxis, heightOfRows} from "../shell/axes.js";
 /** @type {FigureSpec} */
 export const WEIGHTS = {
   id: "weights", title: "Weights of the criteria", ignoresFilter: true,
-  read: "The weights come from the data: a criterion that tells the combinations apart weighs more. Dots are the "
-    + "methods of weighting, the bar is their aggregate, which counts.",
-  available: entry => (entry.score.weights.methods.length ? true : "There are no weights."),
+  read: "The weights come from the data: a criterion that separates the combinations well gets a larger weight. Dots are "
+    + "the weighting methods; the bar is their aggregate, which is used for the score.",
+  available: entry => (entry.score.weights.methods.length ? true : "No weights were computed."),
   draw({entry, colours, theme}) {
     const {methods, values} = entry.score.weights;
     const criteria = entry.score.criteria.map(each => safe(labelOf(each.name)));
@@ -27,7 +27,7 @@ export const WEIGHTS = {
       data: [bar, ...traces], height: heightOfRows(criteria.length * 1.4, 100),
       layout: {xaxis: {title: "weight", rangemode: "tozero"}, yaxis: categoryAxis(criteria), hovermode: "closest"},
       note: entry.score.criteria.some(each => each.reconstruction)
-        ? "Some criteria are of the 3D reconstruction, one value a combination." : null,
+        ? "Some criteria describe the 3D reconstruction, with one value per combination." : null,
     };
   },
 };

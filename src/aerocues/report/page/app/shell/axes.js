@@ -6,7 +6,7 @@ import {boundsOf} from "../basis/statistics.js";
 
 const PIXELS_A_ROW = 20;
 
-/** Height of a figure with one row of text a combination.
+/** Height of a figure with one row of text per combination.
  * @param {number} count @param {number} [extra] */
 export function heightOfRows(count, extra = 70) {
   return Math.max(count, 2) * PIXELS_A_ROW + extra;
@@ -35,7 +35,7 @@ function logTicks(low, high) {
   return ticks;
 }
 
-/** A logarithmic axis for some values, with ticks in words.
+/** A logarithmic axis for these values, with formatted ticks.
  * @param {(Value | undefined)[]} values @param {(value: number) => string} [words] @returns {Axis} */
 export function logAxis(values, words = shown) {
   const known = values.filter(isKnown).filter(value => value > 0);

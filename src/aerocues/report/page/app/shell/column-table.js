@@ -1,4 +1,4 @@
-/* A table with a row a combination: sorted by its headings, with columns to choose and a file to save. */
+/* A table with one row per combination: it can be sorted, its columns chosen, and it can be saved. */
 
 import {fileStem, saveCsv} from "../basis/downloads.js";
 import {announce, disclosure, make} from "../basis/elements.js";
@@ -41,7 +41,7 @@ function sortOrder({prefix, natural}) {
   return text.startsWith("-") ? {key: text.slice(1), down: true} : {key: text, down: false};
 }
 
-/** Rows in the order that was asked for; what has no value comes last.
+/** Rows in the chosen order; rows without a value come last.
  * @param {ColumnTable} table @param {Entry} entry */
 function sortedRows(table, entry) {
   const {key, down} = sortOrder(table);
@@ -83,7 +83,7 @@ export function updateColumnTable(spec, changed) {
       rowCells(columns, a, span)))));
   if (!rows.length) {
     table.element.append(make("tbody", {}, make("tr", {}, make("td", {colspan: columns.length},
-      "No combination passes the filter."))));
+      "No combination matches the filter."))));
   }
   updateMore(table, rows.length, limit);
 }
@@ -97,7 +97,7 @@ function headCell(table, column) {
     "aria-sort": sorted}, button);
 }
 
-/** First click: the better end first; second: the other.
+/** The first click sorts the better values first, the second click the worse ones.
  * @param {ColumnTable} table @param {Column} column */
 function sortBy(table, column) {
   const {key, down} = sortOrder(table);
@@ -109,7 +109,7 @@ function sortBy(table, column) {
   announce(`Sorted by ${column.label}, ${next ? "descending" : "ascending"}.`);
 }
 
-/** Cells in the order of the columns; the name of the combination heads the row.
+/** Cells in the order of the columns; the name of the combination is the row heading.
  * @param {Column[]} columns @param {number} a @param {Span} span */
 function rowCells(columns, a, span) {
   return columns.map(column => {
@@ -142,7 +142,7 @@ function updateChooser(table, entry, columns) {
       return make("label", {title: column.title}, box, column.label);
     }),
     make("button", {type: "button", class: "quiet",
-      onclick: () => state.set({[`${table.prefix}columns`]: null})}, "Usual columns"));
+      onclick: () => state.set({[`${table.prefix}columns`]: null})}, "Default columns"));
 }
 
 /** @param {ColumnTable} table @param {Entry} entry @param {string} key @param {boolean} wanted */

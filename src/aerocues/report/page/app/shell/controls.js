@@ -1,11 +1,11 @@
-/* Controls that read and write one key of the state. */
+/* Controls; each reads and writes one key of the state. */
 
 import {make} from "../basis/elements.js";
 import {CODES, measuresOf} from "../basis/entries.js";
 import {isGroundTruth, labelOf} from "../basis/numbers.js";
 import {currentEntry, state} from "../basis/state.js";
 
-/** The value of a key, or its default where the options do not have it.
+/** The value of a key, or its default if the value is not among the options.
  * @param {string} key @param {Option[]} options @param {string | null} [fallback] */
 function chosen(key, options, fallback) {
   const value = state.get(key);
@@ -93,24 +93,24 @@ export function scaleControl(fallback = "linear") {
 /** @param {string} [fallback] @returns {ControlSpec} */
 export function colourControl(fallback = "detector") {
   return {
-    name: "colour", label: "Colours by",
+    name: "colour", label: "Colour by",
     options: () => CODES.map(code => ({key: code, label: code})),
     fallback: () => fallback,
   };
 }
 
-/** Columns by pair, grouped by whether they need ground truth.
+/** Columns with a value per pair, in two groups: with and without ground truth.
  * @param {Entry} entry @param {(name: string) => boolean} [wanted] @returns {Option[]} */
 export function columnOptions(entry, wanted = () => true) {
   return Object.keys(entry.columns).filter(wanted).map(name => ({
     key: name, label: labelOf(name),
-    group: isGroundTruth(name) ? "by ground truth" : "by inliers, counts and times",
+    group: isGroundTruth(name) ? "from ground truth" : "from inliers, counts and times",
   }));
 }
 
 /** @param {Entry} entry */
 export function measureOptions(entry) {
   return measuresOf(entry).map(({key, label}) => ({
-    key, label, group: isGroundTruth(key) ? "by ground truth" : "by inliers, counts and times",
+    key, label, group: isGroundTruth(key) ? "from ground truth" : "from inliers, counts and times",
   }));
 }

@@ -1,4 +1,4 @@
-/* Figures: drawn when scrolled into view, drawn anew when the view changes, saved on request. */
+/* Figures: drawn when they come into view, redrawn when the state changes, saved on request. */
 
 import {themeName, THEMES} from "../basis/colours.js";
 import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
@@ -58,7 +58,7 @@ function figureContext(figure, width, theme) {
 function describeFigure(figure, context) {
   const reason = figure.available?.(context.entry) ?? true;
   if (reason !== true) return {empty: reason};
-  if (!context.shown.length && !figure.ignoresFilter && !figure.acrossEntries) return {empty: "No combination passes the filter."};
+  if (!context.shown.length && !figure.ignoresFilter && !figure.acrossEntries) return {empty: "No combination matches the filter."};
   return figure.draw(context);
 }
 
@@ -126,7 +126,7 @@ function fullLayout({layout, height}, {width, narrow, colours}) {
   return merged.yaxis2 ? merged : withKnownMargins(merged);
 }
 
-/** Margins worked out here: to have Plotly find them, it draws everything twice or more.
+/** Computes the margins here, because Plotly would draw everything at least twice to find them.
  * @param {Layout} layout */
 function withKnownMargins(layout) {
   const {xaxis, yaxis, margin} = layout;
@@ -156,7 +156,7 @@ function withAxis(axis, own) {
   return {...axis, ...own, title};
 }
 
-/** Saved figures are in the light theme, as paper is.
+/** Saved figures use the light theme.
  * @param {Figure} figure @param {string} format */
 async function saveFigure(figure, format) {
   const width = Math.max(figure.width || 0, 900);
@@ -188,7 +188,7 @@ async function saveDrawing(svg, stem, format) {
   return canvas.toBlob(blob => saveFile(`${stem}.png`, blob, "image/png"));
 }
 
-/** The points of a figure as a table, for those who would rather have numbers.
+/** The points of a figure as a table.
  * @param {Trace[]} traces @returns {Table} */
 function tableOfTraces(traces) {
   const plain = (/** @type {unknown} */ value) => (typeof value === "string" ? unsafe(value) : value);
@@ -214,7 +214,7 @@ function unsafe(text) {
   return text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
 }
 
-/** Marks figures as out of date and draws those near the window, one a frame, those in it first.
+/** Marks figures as out of date and draws those near the window, one per frame, visible ones first.
  * @param {Set<string>} changed */
 export function refreshFigures(changed) {
   for (const figure of figures) {
@@ -225,7 +225,7 @@ export function refreshFigures(changed) {
 
 const OF_THE_TABLE = ["sort", "columns", "rows"];
 
-/** Whether a figure shows what a key of the state stands for.
+/** Whether a figure depends on a key of the state.
  * @param {string} key @param {Figure} figure */
 function concerns(key, figure) {
   if (OF_THE_TABLE.includes(key)) return false;

@@ -29,7 +29,7 @@ export function matrixFigure({x, y, z, theme, narrow, what, low = -1}) {
   };
 }
 
-/** As short as can be: ".92".
+/** As short as possible: ".92".
  * @param {Value} value */
 function correlationText(value) {
   return isKnown(value) ? value.toFixed(2).replace(/^(-?)0\./, "$1.").replace("1.00", "1") : "";
@@ -41,7 +41,7 @@ export function lowestOf(matrix) {
   return known.length ? Math.min(...known) : 0;
 }
 
-/** Correlations of rankings are seldom negative: the colours begin where the values do.
+/** Correlations of rankings are rarely negative: the colours start at the lowest value.
  * @param {Matrix} matrix */
 export function lowEnd(matrix) {
   const low = lowestOf(matrix);

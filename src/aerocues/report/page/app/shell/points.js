@@ -1,12 +1,11 @@
-/* Clouds of points, one a combination, in colours by method. */
+/* Scatter plots with one point per combination, coloured by method. */
 
 import {seriesStyle} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
 import {fixed, isKnown, percent, shown, valueText} from "../basis/numbers.js";
 import {names} from "./axes.js";
 
-/** Axes, margins and legend of a cloud of points. The margins are given, as to have Plotly find them
- * takes it twice the time.
+/** Axes, margins and legend of a scatter plot. Fixed margins, because Plotly takes twice the time to find them.
  * @param {Axis} xaxis @param {Axis} yaxis @param {boolean} narrow */
 export function scatterFrame(xaxis, yaxis, narrow) {
   return {
@@ -16,8 +15,8 @@ export function scatterFrame(xaxis, yaxis, narrow) {
   };
 }
 
-/** Means leave failed pairs out, so what fails on the hard ones looks good: a success rate near the
- * best score's is asked for.
+/** Means exclude failed pairs, so a combination that fails on the hard pairs looks good. It must therefore
+ * reach a success rate close to that of the best.
  * @param {Entry} entry @param {number} a */
 export function isSound(entry, a) {
   const {success_rate: success, best, settings} = entry.score;
@@ -44,5 +43,5 @@ export function pointsByMethod(entry, rows, code, x, y, theme) {
 function pointText(entry, a, ...measures) {
   return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
     `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`
-    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, succeeds on ${percent(entry.score.success_rate[a])}`;
+    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, success ${percent(entry.score.success_rate[a])}`;
 }

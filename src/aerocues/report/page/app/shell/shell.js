@@ -27,7 +27,7 @@ export function buildMasthead() {
     make("div", {}, make("h1", {}, title),
       make("p", {class: "byline"}, `Detectors, descriptors and matchers compared by aerocues ${version}, ${day}`)));
   elementOf("colophon").append(
-    `Made by aerocues ${version}. This page is one file: it works offline and sends nothing anywhere.`);
+    `Made by aerocues ${version}. This page is a single file. It works offline and sends no data.`);
 }
 
 export function buildToolbar() {
@@ -60,7 +60,7 @@ function buildEntryChoice() {
   const select = make("select", {id: "entry", onchange: () =>
     state.set({entry: select.value === entries[0].name ? null : select.value})},
   entries.map(entry => make("option", {value: entry.name}, entry.name)));
-  return make("label", {class: "control", for: "entry"}, make("span", {class: "word"}, "Data set"), select);
+  return make("label", {class: "control", for: "entry"}, make("span", {class: "word"}, "Dataset"), select);
 }
 
 function buildChips() {
@@ -80,7 +80,7 @@ function buildChips() {
   return panel;
 }
 
-/** Escape, and a click elsewhere, close an open panel.
+/** Escape or a click outside closes an open panel.
  * @param {HTMLDetailsElement} panel */
 function closeByLeaving(panel) {
   document.addEventListener("click", event => {
@@ -112,7 +112,7 @@ export function buildSections() {
 export function goTo(id) {
   const element = document.getElementById(id);
   if (!element) return;
-  // At once: on a slow way there, figures would be drawn, grow and shift the place.
+  // Without smooth scrolling: figures on the way would be drawn, grow and shift the target.
   element.scrollIntoView({behavior: "instant", block: "start"});
   element.querySelector("h2")?.focus({preventScroll: true});
 }
@@ -131,8 +131,8 @@ export function updateToolbar({filter, clear, themes}) {
   elementOf("filter-count").textContent =
     `${shownNow} of ${entry.combinations.length}`;
   elementOf("filter-help").textContent = unknown.length
-    ? `No combination has a part that begins with ${listed(unknown.map(word => `“${word}”`), "or")}.`
-    : "“orb -flann”: with ORB, without FLANN. “or sift daisy”: with SIFT or DAISY. “not l2”: without L2. Filters everything below.";
+    ? `No method of any combination begins with ${listed(unknown.map(word => `“${word}”`), "or")}.`
+    : "“orb -flann”: with ORB, without FLANN. “or sift daisy”: with SIFT or DAISY. “not l2”: without L2. The filter applies to everything below.";
   elementOf("filter-help").classList.toggle("warning", unknown.length > 0);
   themes.textContent = themeName() === "dark" ? "Light" : "Dark";
   themes.setAttribute("aria-label", `Show in ${themeName() === "dark" ? "light" : "dark"} colours`);
@@ -173,7 +173,7 @@ function linkTo(id) {
   return link;
 }
 
-/* Marks the section in view in the contents. */
+/* Marks the visible section in the contents. */
 export function followScrolling() {
   const observer = new IntersectionObserver(seen => {
     for (const {target, isIntersecting} of seen) {

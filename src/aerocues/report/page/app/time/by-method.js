@@ -1,4 +1,4 @@
-/* Times of detectors and of descriptors, and brute force against FLANN. */
+/* Times by detector and descriptor, and brute force against FLANN. */
 
 import {seriesStyle} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -12,13 +12,13 @@ import {hasStages, secondsAxis, totalMedians} from "./stage-times.js";
 /** @type {FigureSpec} */
 export const BY_METHOD = {
   id: "bymethod", title: "By detector and by descriptor",
-  read: "A dot is a combination that passes the filter; the line in the box is the median. Detection depends on the detector "
-    + "alone, description on the number of its keypoints, too.",
+  read: "Each dot is a combination that matches the filter; the line in the box is the median. Detection depends on the detector "
+    + "only; description also depends on the number of keypoints.",
   controls: [
     {name: "of", label: "Time of", fallback: () => "detect", options: entry => [
-      ...(hasStages(entry) === true ? [{key: "detect", label: "detecting, by detector"}, {key: "describe", label: "describing, by descriptor"},
+      ...(hasStages(entry) === true ? [{key: "detect", label: "detection, by detector"}, {key: "describe", label: "description, by descriptor"},
         {key: "match", label: "matching, by descriptor"}] : []),
-      {key: "total:detector", label: "all, by detector"}, {key: "total:descriptor", label: "all, by descriptor"}]},
+      {key: "total:detector", label: "total, by detector"}, {key: "total:descriptor", label: "total, by descriptor"}]},
     scaleControl("log"),
   ],
   draw(context) {
@@ -46,10 +46,10 @@ export const BY_METHOD = {
 /** @type {FigureSpec} */
 export const MATCHERS = {
   id: "matchers", title: "Brute force against FLANN",
-  read: "Each point is a detector, descriptor and norm; across with brute force, up with FLANN. Below the line FLANN "
-    + "is faster.",
+  read: "Each point is a detector, descriptor and norm: horizontal with brute force, vertical with FLANN. Below the line FLANN "
+    + "has the lower value.",
   controls: [{name: "of", label: "Value", fallback: entry => (hasStages(entry) === true ? "match" : "total"), options: entry => [
-    ...(hasStages(entry) === true ? [{key: "match", label: "time of matching"}] : []), {key: "total", label: "total time"},
+    ...(hasStages(entry) === true ? [{key: "match", label: "matching time"}] : []), {key: "total", label: "total time"},
     {key: "score", label: "CUES"}, ...["precision", "inliers", "gt_precision@3"].filter(name => measureOf(entry, name))
       .map(name => ({key: name, label: labelOf(name)}))]}],
   available: entry => (entry.matcher.includes("BF") && entry.matcher.includes("FLANN")
@@ -60,7 +60,7 @@ export const MATCHERS = {
     const values = of === "total" ? totalMedians(entry) : of === "match" ? entry.medians.match : measureNamed(entry, of).values;
     const fits = (/** @type {Value} */ value) => isKnown(value) && (!time || value > 0);
     const pairs = matcherPairs(entry, rows).filter(([a, b]) => fits(values[a]) && fits(values[b]));
-    if (!pairs.length) return {empty: "No combination passes the filter with both matchers."};
+    if (!pairs.length) return {empty: "No combination matches the filter with both matchers."};
     const [low, high] = boundsOf(valuesAt(values, pairs.flat()));
     const line = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
       x: [low, high], y: [low, high], line: {color: colours.line, width: 1, dash: "dot"}};
@@ -70,7 +70,7 @@ export const MATCHERS = {
     return {
       data: [line, ...data.filter(trace => trace.x.length)], height: 440,
       layout: {xaxis: axis("brute force"), yaxis: axis("FLANN"), hovermode: "closest"},
-      note: time ? `FLANN is the faster in ${lower} of ${pairs.length}.` : `FLANN has the lower value in ${lower} of ${pairs.length}.`,
+      note: time ? `FLANN is faster in ${lower} of ${pairs.length} cases.` : `FLANN has the lower value in ${lower} of ${pairs.length} cases.`,
     };
   },
 };

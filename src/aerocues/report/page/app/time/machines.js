@@ -1,4 +1,4 @@
-/* The same data set on two machines. */
+/* The same dataset on two machines. */
 
 import {seriesStyle} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -14,9 +14,9 @@ function machinesOf(entry) {
 /** @type {FigureSpec} */
 export const MACHINES = {
   id: "machines", title: "Between machines", ignoresFilter: true,
-  read: "How many times as long the second machine takes, stage by stage: the dot is the geometric mean over the same "
-    + "measurements, the bar holds 90 % of them. A rank correlation near 1 means that what is fast on one is fast on the other.",
-  available: entry => (machinesOf(entry).length ? true : "This data set was measured on one machine only."),
+  read: "Time on the second machine divided by time on the first, by stage. The dot is the geometric mean over the same "
+    + "measurements; the bar contains 90 % of them. A rank correlation near 1 means that both machines agree on what is fast.",
+  available: entry => (machinesOf(entry).length ? true : "This dataset was measured on one machine only."),
   draw({entry, theme}) {
     const both = machinesOf(entry);
     const known = both.flatMap(({second, times}) => (Array.isArray(times) ? [{second, times}] : []));

@@ -11,8 +11,8 @@ import {inTimeOrder, ORDERS, secondsAxis} from "./stage-times.js";
 /** @type {FigureSpec} */
 export const PER_THOUSAND = {
   id: "thousand", title: "Time per thousand",
-  read: "The time until a thousand matches, or a thousand inliers, are found: the gap between the dots is what wrong "
-    + "matches cost. Means over the pairs, as in the score.",
+  read: "The time per thousand matches and per thousand inliers. The gap between the dots is the cost of wrong "
+    + "matches. Means over the pairs, as in the score.",
   controls: [ORDERS, topControl(), scaleControl("log")],
   available: entry => (perThousand(entry).length ? true : "Times per thousand were not measured."),
   draw(context) {

@@ -12,7 +12,7 @@ import {STAGES_FIGURE} from "./stages.js";
 export const TIME_SECTION = {
   id: "time",
   title: "Time",
-  read: "What a combination costs: detecting and describing one image, matching and verifying one pair, on one core. "
+  read: "The time that a combination needs to detect and describe one image and to match and verify one pair, on one core. "
     + "Medians over the pairs.",
   available: entry => entry.medians?.total?.some(isKnown) || hasColumn(entry, "total_seconds"),
   build(body) {

@@ -10,7 +10,7 @@ export const STAGES = ["detect", "describe", "match", "verify"];
 /** @param {Entry} entry @returns {true | string} */
 export function hasStages(entry) {
   return STAGES.some(stage => entry.medians[stage].some(isKnown))
-    ? true : "Only total times are known, not those of the stages.";
+    ? true : "Only total times are known, not the times of the stages.";
 }
 
 /** @param {Colours} colours @param {Stage} stage */
@@ -24,7 +24,7 @@ export function totalMedians(entry) {
 }
 
 /** @type {ControlSpec} */
-export const ORDERS = {name: "order", label: "Which", fallback: () => "score", options: () => [
+export const ORDERS = {name: "order", label: "Show", fallback: () => "score", options: () => [
   {key: "score", label: "best by CUES"}, {key: "fast", label: "fastest"}, {key: "slow", label: "slowest"}]};
 
 /** @param {FigureContext} context @param {string} order @param {Value[]} values */

@@ -1,4 +1,4 @@
-/* Stacked times of the stages; on a logarithmic scale, where stacks would deceive, dots. */
+/* Stacked times of the stages; on a logarithmic scale, where stacks would mislead, dots. */
 
 import {SYMBOLS} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
@@ -10,8 +10,8 @@ import {hasStages, inTimeOrder, ORDERS, secondsAxis, stageColour, STAGES, totalM
 /** @type {FigureSpec} */
 export const STAGES_FIGURE = {
   id: "stages", title: "Where the time goes", wide: true,
-  read: "The bar is the time for one image and one pair, split by stage. On a logarithmic scale each stage has a "
-    + "dot of its own, as stacked logarithms would mislead.",
+  read: "The bar is the time for one image and one pair, split by stage. On a logarithmic scale each stage has its own "
+    + "dot, because stacked logarithms would mislead.",
   controls: [ORDERS, topControl(), scaleControl()],
   available: entry => (totalMedians(entry).some(isKnown) ? true : "Times were not measured."),
   draw(context) {
@@ -31,7 +31,7 @@ export const STAGES_FIGURE = {
       data, height: heightOfRows(top.length, 100),
       layout: {barmode: "stack", bargap: 0.3, hovermode: "closest", yaxis: categoryAxis(names(entry, top)),
         xaxis: secondsAxis(option("scale"), data.flatMap(trace => trace.x))},
-      note: stages.length ? "Sums of medians: they can differ a little from the median of the sums." : String(hasStages(entry)),
+      note: stages.length ? "The bars add medians, which can differ slightly from the median of the sums." : String(hasStages(entry)),
     };
   },
 };
