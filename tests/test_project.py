@@ -153,7 +153,9 @@ def test_what_the_demo_leaves_is_removed(repository: Path) -> None:
 
 
 def test_source_files_stay_readable(tracked_texts: dict[str, str]) -> None:
-    sources = {name: text for name, text in tracked_texts.items() if re.match(r"src/.*\.(?:py|js)$", name)}
+    sources = {
+        name: text for name, text in tracked_texts.items() if re.match(r"src/.*\.(?:py|js)$", name)
+    }
     too_long = {
         name: text.count("\n")
         for name, text in sources.items()
