@@ -32,7 +32,7 @@ def _faults(repository: Path, payload: dict[str, Any], folder: Path) -> str:
         "files": [str(repository / TYPES), "payload.ts"],
     }
     (folder / "tsconfig.json").write_text(json.dumps(settings))
-    command = [node, repository / COMPILER, "-p", folder]
+    command: list[str] = [node, str(repository / COMPILER), "-p", str(folder)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     return done.stdout + done.stderr
 
