@@ -52,7 +52,7 @@ def test_the_reference_comes_first_and_failures_are_shown(entry: ReportEntry) ->
     by_name = {cloud["combination"]: cloud["why"] for cloud in found.clouds}
     assert next(iter(by_name)) == MODELLED[0]
     assert by_name[MODELLED[0]].startswith("reference of the distances; best by CUES")
-    assert by_name[MODELLED[STATUSES.index("misplaced")]] == "cameras farthest from their places"
+    assert by_name[MODELLED[STATUSES.index("misplaced")]] == "largest position errors"
     assert by_name[MODELLED[STATUSES.index("incomplete")]] == "fewest images"
     assert MODELLED[STATUSES.index("no_verified_pair")] not in by_name
     assert found.notes == []

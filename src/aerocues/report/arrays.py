@@ -1,4 +1,4 @@
-"""Numbers as JSON holds them: arrays in base64, the rest rounded."""
+"""Numbers for JSON: arrays in base64, other numbers rounded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LARGEST_STEP = 65534
 
 
 def packed_floats(values: ArrayLike) -> dict[str, str]:
-    """Little-endian float32 in row-major order, as base64; NaN stands for no value."""
+    """Little-endian float32 in row-major order, as base64; NaN means no value."""
     return {"f32": _base64(np.asarray(values, dtype="<f4"))}
 
 
@@ -26,12 +26,12 @@ def packed_bytes(values: ArrayLike) -> dict[str, str]:
 
 
 def packed_scaled(values: ArrayLike, low: float, high: float) -> dict[str, str | float]:
-    """Numbers between two bounds in 16 bits each, as base64; 65535 stands for no value.
+    """Numbers between two bounds in 16 bits each, as base64; 65535 means no value.
 
-    What lies beyond a bound is put on it.
+    Values outside are clipped to the bounds.
     """
     numbers = np.asarray(values, dtype=np.float64)
-    # Rounded first, as `plain` will round them.
+    # Rounded first, because `plain` rounds them too.
     start, end = (float(f"{bound:.{DIGITS}g}") for bound in (low, high))
     steps = (np.clip(numbers, start, end) - start) / ((end - start) or 1.0) * LARGEST_STEP
     codes = np.where(np.isfinite(numbers), np.nan_to_num(steps).round(), LARGEST_STEP + 1)
@@ -43,7 +43,7 @@ def _base64(values: np.ndarray[Any, Any]) -> str:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON can write it: five significant digits, null where there is no number."""
+    """A value for JSON: five significant digits; null for NaN and infinity."""
     if value is None or isinstance(value, str | bool):
         return value
     if isinstance(value, np.generic | np.ndarray):
@@ -64,5 +64,5 @@ def _rounded(value: float) -> float | int | None:
         return None
     rounded = float(f"{value:.{DIGITS}g}")
     if not math.isfinite(rounded):
-        return value  # so large that rounding goes beyond the largest number
+        return value  # rounding would exceed the largest number
     return int(rounded) if rounded == int(rounded) and abs(rounded) < 1e15 else rounded

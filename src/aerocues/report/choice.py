@@ -1,4 +1,4 @@
-"""Which combinations and which pairs are worth a picture."""
+"""Chooses the combinations and pairs for the pictures."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DETECTOR = 0
 
 @dataclass(frozen=True)
 class Choice:
-    """A combination on a pair, and why each of them is shown."""
+    """A combination on a pair, and why each is shown."""
 
     combination: str
     pair: int
@@ -25,12 +25,12 @@ class Choice:
 
 
 def chosen_combinations(found: ReportEntry, number: int) -> dict[str, str]:
-    """The best, one with another detector, the best binary, the fastest good one, then others.
+    """The best, the best with another detector, the best binary, the fastest good one, others.
 
     Returns
     -------
     dict of str to str
-        Why each is shown, the most important first.
+        Reason for each, the most important first.
     """
     ranking = found.ranking
     names, order = found.combinations, ranking.scores.order.tolist()
@@ -54,8 +54,8 @@ def chosen_combinations(found: ReportEntry, number: int) -> dict[str, str]:
 def chosen_pictures(found: ReportEntry, number: int) -> list[Choice]:
     """The pictures to draw, the most important first.
 
-    The same pairs for all combinations, so that these can be set side by side: the best, median
-    and worst pair of the best combination; and each one's own worst pair.
+    All combinations share the best, median and worst pair of the best combination, so that they can
+    be compared side by side. Each combination also gets its own worst pair.
     """
     combinations = chosen_combinations(found, number)
     if not combinations:
@@ -82,11 +82,11 @@ def chosen_pictures(found: ReportEntry, number: int) -> list[Choice]:
 
 
 def _pairs_by_score(found: ReportEntry, combination: str) -> list[int]:
-    """Numbers of the pairs that a combination was measured on, the worst first."""
+    """Numbers of the pairs of a combination, the worst first."""
     position = found.combinations.index(combination)
     table = found.ranking.scores.table
     values = scores_of_repeats(found.ranking.scores)[position]
-    # A failed pair that is left out of the score is the worst all the same.
+    # A failed pair is the worst, even if the score ignores it.
     score = dict(zip(map(int, table.repeats), np.nan_to_num(values, nan=-1.0), strict=True))
     name = combination_name()
     measured = found.rows.filter(name == combination)["pair"].to_list()

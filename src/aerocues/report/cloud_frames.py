@@ -1,4 +1,4 @@
-"""Clouds without a true scale and place, brought into one frame, so that they can be compared."""
+"""Brings clouds without a true scale and position into one frame, to compare them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ METRES = "m"
 
 
 def in_one_frame(clouds: Sequence[Cloud]) -> list[Cloud]:
-    """The clouds in the frame of the first one without a scale, that turned upright.
+    """The clouds in the frame of the first cloud without a scale, which is turned upright.
 
-    Those in metres stay as they are; one that shares too few cameras with the first keeps its own
-    frame, upright.
+    Clouds in metres are unchanged. A cloud that shares too few cameras with the first keeps its own
+    frame, turned upright.
 
     Parameters
     ----------
@@ -45,11 +45,11 @@ def _onto(cloud: Cloud, other: Cloud) -> Similarity | None:
 
 
 def _upright(cloud: Cloud) -> NDArray[np.float64]:
-    """(3, 3) rotation that lays the plane of the points flat, with the cameras above it."""
+    """(3, 3) rotation that makes the plane of the points horizontal, with the cameras above."""
     points = cloud.points.astype(np.float64)
     middle = np.median(points, axis=0)
     centred = points - middle
-    # From the direction in which the points spread least to that in which they spread most.
+    # Eigenvectors from the smallest to the largest spread of the points.
     up, _, across = np.linalg.eigh(centred.T @ centred)[1].T
     if (np.median(cloud.centres, axis=0) - middle) @ up < 0:
         up = -up

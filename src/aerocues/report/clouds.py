@@ -1,4 +1,4 @@
-"""The clouds of the models that are most worth a look, packed for the page."""
+"""The clouds of the most interesting models, packed for the page."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from aerocues.results.combination_columns import name_in_row
 MOST_CLOUDS = 10
 MOST_POINTS = 6000
 SEED = 0
-# Points outside of the box that holds all but this share at either end, and its size again on
-# either side, are strays that nobody would see.
+# Strays lie outside the box of these quantiles (this share and 1 - this share), enlarged by its own
+# size on each side.
 STRAYS = 0.005
 LONGEST_TRACK = 255
 OK = "ok"
@@ -30,14 +30,14 @@ Row = dict[str, Any]
 
 @dataclass
 class Clouds:
-    """Clouds as the page has them, the most important first, and what is to be said of them."""
+    """Clouds of the payload, the most important first, and notes."""
 
     clouds: list[dict[str, Any]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
 def clouds_of(found: ReportEntry) -> Clouds:
-    """The clouds of an entry that are to be shown; none where there are no models.
+    """The clouds of an entry to show; empty if there are no models.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def clouds_of(found: ReportEntry) -> Clouds:
 
 
 def _chosen(found: ReportEntry, result: Clouds) -> list[tuple[str, str, Cloud]]:
-    """Combination, reasons and cloud; what cannot be read is noted."""
+    """Combination, reasons and cloud of each; unreadable clouds are noted."""
     opened: dict[str, Cloud | None] = {}
 
     def cloud_of(row: Row) -> Cloud | None:
@@ -70,7 +70,7 @@ def _chosen(found: ReportEntry, result: Clouds) -> list[tuple[str, str, Cloud]]:
     rows = [row for row in _rows(found) if row["row_key"] and row["registered_images"]]
     reasons: dict[str, list[str]] = {}
     for why, candidates in _reasons(rows):
-        # The next one is taken where the file of a cloud is missing.
+        # If the file of a cloud is missing, the next candidate is taken.
         row = next((each for each in candidates if cloud_of(each) is not None), None)
         if row is not None:
             reasons.setdefault(row["name"], []).append(why)
@@ -82,7 +82,7 @@ def _chosen(found: ReportEntry, result: Clouds) -> list[tuple[str, str, Cloud]]:
 
 
 def _reasons(rows: Sequence[Row]) -> list[tuple[str, Sequence[Row]]]:
-    """Why models are worth a look, the most important first, and rows for it, the first best."""
+    """Reasons to show a model, the most important first, each with its candidates in order."""
     good, misplaced, incomplete = (
         [row for row in rows if row["status"] == status]
         for status in (OK, "misplaced", "incomplete")
@@ -92,9 +92,9 @@ def _reasons(rows: Sequence[Row]) -> list[tuple[str, Sequence[Row]]]:
         ("reference of the distances", [row for row in rows if row["reference"] == row["name"]]),
         ("best by CUES", sorted(good, key=lambda row: row["rank"])),
         ("most images, then most points", sorted(good, key=_by_size)),
-        ("cameras farthest from their places", sorted(misplaced, key=_by_error, reverse=True)),
+        ("largest position errors", sorted(misplaced, key=_by_error, reverse=True)),
         ("most points", sorted(good, key=lambda row: -(row["points_3d"] or 0))),
-        ("cameras nearest to their places", sorted(placed, key=_by_error)),
+        ("smallest position errors", sorted(placed, key=_by_error)),
         ("fewest images", sorted(incomplete, key=_by_size, reverse=True)),
     ]
 
@@ -118,7 +118,7 @@ def _by_error(row: Row) -> float:
 
 
 def _packed(cloud: Cloud) -> dict[str, Any]:
-    """A seeded sample of the points, and the cameras."""
+    """A seeded sample of the points, and all cameras."""
     near = _without_strays(cloud)
     kept = near
     if len(near) > MOST_POINTS:
@@ -142,7 +142,7 @@ def _packed(cloud: Cloud) -> dict[str, Any]:
 
 
 def _without_strays(cloud: Cloud) -> NDArray[np.int64]:
-    """Positions of the points that are where the others are."""
+    """Indices of the points without the strays."""
     if not len(cloud.points):
         return np.arange(0)
     low, high = np.quantile(cloud.points, (STRAYS, 1 - STRAYS), axis=0)
@@ -152,7 +152,7 @@ def _without_strays(cloud: Cloud) -> NDArray[np.int64]:
 
 
 def _scaled(values: NDArray[np.float32]) -> dict[str, str | float] | None:
-    """Between the smallest and the largest; None where there is no value at all."""
+    """Values packed between their minimum and maximum; None if there are no values."""
     known = values[np.isfinite(values)]
     if not len(known):
         return None

@@ -1,4 +1,4 @@
-"""The figures of a pair that the report shows: one row each."""
+"""The quantities per pair that the report shows: one row each."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Better = Literal["higher", "lower"]
 
 @dataclass(frozen=True)
 class PairColumn:
-    """One figure.
+    """One quantity.
 
     Attributes
     ----------
@@ -29,9 +29,9 @@ class PairColumn:
     better : {"higher", "lower"} or None
     definition : str
     source : str
-        A column of the measurements, or a SQL expression of columns; the name by default.
+        A column of the measurements, or an SQL expression of columns; the name by default.
     of_success : bool
-        Whether it is shown for pairs that succeeded only: what a failed pair gives deceives.
+        Whether it is shown for successful pairs only; values of failed pairs would mislead.
     """
 
     name: str
@@ -73,8 +73,8 @@ SHOWN: tuple[PairColumn, ...] = (
     _of_two_images("describe", "describe"),
     PairColumn("match_seconds", "s", "lower", "wall seconds to match", of_success=False),
     PairColumn("verify_seconds", "s", "lower", "wall seconds to verify", of_success=False),
-    _true("gt_precision@3", "ratio", "share of matches right within 3 px, by the ground truth"),
-    _true("gt_matching_score@3", "ratio", "matches right within 3 px / keypoints of image 1"),
+    _true("gt_precision@3", "ratio", "share of matches correct within 3 px, by the ground truth"),
+    _true("gt_matching_score@3", "ratio", "matches correct within 3 px / keypoints of image 1"),
     _true("gt_repeatability", "ratio", "covisible keypoints found again within 3 px"),
     _true("homography_auc@3", "ratio", "accuracy of the estimated homography up to 3 px"),
     _true("pose_auc@10", "ratio", "accuracy of the estimated relative pose up to 10 degrees"),
@@ -90,7 +90,7 @@ def _unit(criterion: Criterion) -> str:
 
 
 def columns_for(criteria: Sequence[Criterion]) -> list[PairColumn]:
-    """The figures to show where these criteria score: they come first, each once."""
+    """The quantities to show with these criteria: the criteria first, each once."""
     shown = {column.name: column for column in SHOWN}
     first = {
         each.name: shown.get(each.name)
@@ -108,20 +108,20 @@ def column_facts(
     succeeded: Sequence[str],
     criteria: Sequence[Criterion],
 ) -> dict[str, dict[str, Any]]:
-    """The figures that are known of any pair, as arrays of combinations x pairs.
+    """The quantities that are known for at least one pair, as arrays of combinations x pairs.
 
     Parameters
     ----------
     rows : pl.DataFrame
-        Of one dataset and machine.
+        Rows of one dataset and machine.
     positions : two (rows,) int64
         Combination and pair of each row.
     shape : (int, int)
         Combinations and pairs.
     succeeded : sequence of str
-        Statuses of pairs that succeeded.
+        Statuses that count as a success.
     criteria : sequence of Criterion
-        That score.
+        Criteria of the score.
     """
     found = {}
     success = rows["status"].is_in(list(succeeded)).to_numpy()
@@ -142,7 +142,7 @@ def column_facts(
 
 
 def _numbers(rows: pl.DataFrame, source: str) -> NDArray[np.float64] | None:
-    """(rows,) float64, NaN where there is no finite number; None without such a column."""
+    """(rows,) float64, NaN where not finite; None if the column is missing."""
     import polars as pl
 
     try:
@@ -157,7 +157,7 @@ def _numbers(rows: pl.DataFrame, source: str) -> NDArray[np.float64] | None:
 def matrix_positions(
     rows: pl.DataFrame, combinations: Mapping[str, int], pairs: Mapping[int, int]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The combination and the pair of each row, as positions."""
+    """Positions of the combination and the pair of each row."""
     names = rows.select(combination_name()).to_series()
     return (
         np.array([combinations[name] for name in names], dtype=np.int64),
@@ -166,7 +166,7 @@ def matrix_positions(
 
 
 def criterion_facts(criteria: Sequence[Criterion] = CRITERIA) -> list[dict[str, Any]]:
-    """Criteria as the page has them."""
+    """Criteria in the payload."""
     return [
         {
             "name": each.name,

@@ -1,4 +1,4 @@
-"""Entries side by side: rankings across data sets, times across machines."""
+"""Comparison of entries: rankings across datasets, times across machines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OF_SUMMARY = ("alternative", "mean", "min", "spread", "mean_rank", "worst_rank")
 
 
 def comparison_of(entries: Sequence[Entry]) -> Comparison | None:
-    """The rankings side by side; None for a single one, or if they share no combination."""
+    """The rankings side by side; None for a single entry or without shared combinations."""
     if len(entries) < 2:
         return None
     try:
@@ -26,7 +26,7 @@ def comparison_of(entries: Sequence[Entry]) -> Comparison | None:
 
 
 def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
-    """Rank correlations of the entries and how versatile each combination is."""
+    """Rank correlations of the entries, and the versatility of each combination."""
     comparison = comparison_of(entries)
     if comparison is None:
         return None
@@ -51,7 +51,7 @@ def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
 
 
 def machine_facts(entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """Every two entries that are the same data set on different machines."""
+    """All pairs of entries with the same dataset on different machines."""
     facts = []
     for first, second in _pairs_of_machines(entries):
         try:

@@ -1,4 +1,4 @@
-"""Graded transformations: pairs that form a curve, and what its axis is called."""
+"""Graded transformations: pairs that form a curve, and the name of its axis."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 Pair = Mapping[str, Any]
-# Axes of the kinds of transformation in `datasets.synthetic`.
+# Names and axes of the transformations in `datasets.synthetic`.
 AXES: dict[str, tuple[str, str]] = {
     "rotation": ("rotation", "degrees"),
     "scale": ("scale", "factor"),
@@ -19,7 +19,7 @@ AXES: dict[str, tuple[str, str]] = {
     "jpeg": ("JPEG compression", "quality"),
     "tilt": ("tilt", "degrees"),
 }
-# What changes along the sequences of Mikolajczyk et al. (IJCV 2005), as they name it.
+# The transformations of the sequences of Mikolajczyk et al. (IJCV 2005), in their words.
 OXFORD = {
     "bark": "zoom and rotation",
     "bikes": "blur",
@@ -35,7 +35,7 @@ NUMBER = re.compile(r"(\d+)\.\w+$")
 
 
 def step_of(dataset: str, pair: Pair) -> float | None:
-    """How far along its curve a pair is; None where it is on none."""
+    """Position of a pair along its curve; None if it is not on a curve."""
     if dataset.startswith("synthetic"):
         return _transformation(pair)[1]
     if dataset in ("oxford", "hpatches") and pair["sequence"]:
@@ -54,7 +54,7 @@ def _transformation(pair: Pair) -> tuple[str, float | None]:
 
 
 def _curve_of(dataset: str, pair: Pair) -> tuple[str, str]:
-    """Name and axis of the curve that a pair is on."""
+    """Name and axis of the curve of a pair."""
     if dataset.startswith("synthetic"):
         return AXES.get(_transformation(pair)[0], ("", ""))
     sequence = pair["sequence"]
@@ -63,13 +63,13 @@ def _curve_of(dataset: str, pair: Pair) -> tuple[str, str]:
 
 
 def curves_of(dataset: str, pairs: Sequence[Pair]) -> list[dict[str, Any]]:
-    """Curves of two pairs or more, each along its axis.
+    """Curves with at least two pairs, sorted along their axis.
 
     Parameters
     ----------
     dataset : str
     pairs : sequence of mapping
-        With ``sequence, image_2`` and ``step`` as `step_of` gives it.
+        With ``sequence``, ``image_2``, and ``step`` from `step_of`.
     """
     members: dict[tuple[str, str], list[int]] = {}
     for position, pair in enumerate(pairs):

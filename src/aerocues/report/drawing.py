@@ -1,7 +1,7 @@
 """The process that repeats measurements: ``python -m aerocues.report.drawing``.
 
-It receives a context and then pairs and combinations over a pipe, and sends the matches back. Some
-methods crash on some images; a report is not to be lost by that.
+It receives a context, then pairs and combinations over a pipe, and sends the matches back. Some
+methods crash on some images; in a separate process the report survives.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from aerocues.processes.heartbeat import Heartbeat
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
-    """Draw until the parent closes the pipe."""
+    """Answer requests until the parent closes the pipe."""
     from aerocues.report.drawn_matches import Drawer
 
     drawer = Drawer(pipe.recv())

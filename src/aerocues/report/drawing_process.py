@@ -1,4 +1,4 @@
-"""The process that repeats measurements, as its parent sees it."""
+"""The parent's side of the process that repeats measurements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SHARE_OF_MEMORY = 0.8
 
 
 class DrawingProcess:
-    """Repeats measurements in a process of its own, started anew when it was lost.
+    """Repeats measurements in a separate process, which is restarted if it dies.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class DrawingProcess:
         self._stop(0.0 if error else SECONDS_TO_END)
 
     def draw(self, pair_index: int, combination: Combination, timeout: float) -> DrawnMatches | str:
-        """The matches of a combination on a pair, or why there are none.
+        """The matches of a combination on a pair, or the reason why they cannot be had.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class DrawingProcess:
             found: DrawnMatches | str | Loss = child.receive()
             if not isinstance(found, Loss):
                 return found
-            reason = "the process died in it"
+            reason = "the process died while drawing it"
         self._stop()
         return reason
 

@@ -1,4 +1,4 @@
-"""One data set on one machine, with everything that the page shows of it."""
+"""One dataset on one machine, with everything that the page shows about it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LONG = ("combinations", "exclusions")
 
 @dataclass(frozen=True)
 class ReportEntry:
-    """What the report shows of one data set on one machine.
+    """The content of the report for one dataset on one machine.
 
     Attributes
     ----------
@@ -48,9 +48,9 @@ class ReportEntry:
     settings : dict
         As in ``run.json``.
     results : Results
-        What it was read from.
+        Where it was read from.
     models : pl.DataFrame
-        Its reconstructions; none where there are none.
+        Its reconstructions; empty if there are none.
     """
 
     entry: Entry
@@ -66,17 +66,17 @@ class ReportEntry:
 
     @property
     def rows(self) -> pl.DataFrame:
-        """Its measured rows."""
+        """The measured rows."""
         return self.entry.rows
 
     @property
     def combinations(self) -> tuple[str, ...]:
-        """By name; arrays are in this order."""
+        """Names of the combinations, in the order of all arrays."""
         return self.ranking.scores.table.alternatives
 
     @property
     def chance_fails(self) -> bool:
-        """Whether a pair that does not beat chance has failed."""
+        """Whether a pair that does not beat chance counts as failed."""
         return score_preset_named(self.entry.preset).chance_fails
 
     @property
@@ -85,12 +85,12 @@ class ReportEntry:
         return SUCCESS if self.chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
 
     def seconds(self) -> dict[str, float]:
-        """Median time of each combination for an image and a pair, where it is known."""
+        """Median time of each combination per image and pair, where known."""
         medians = combination_medians(self.rows).drop_nulls("total_seconds")
         return dict(medians.select("combination", "total_seconds").iter_rows())
 
     def pairs(self) -> list[dict[str, Any]]:
-        """The pairs in order: number, sequence, images, and how far along a curve they are."""
+        """The pairs in order: number, sequence, images, and position along a curve."""
         import polars as pl
 
         named = self.rows.select(
@@ -101,7 +101,7 @@ class ReportEntry:
 
 
 def entry_facts(found: ReportEntry) -> dict[str, Any]:
-    """An entry as the page has it."""
+    """An entry of the payload."""
     entry, rows, pairs = found.entry, found.rows, found.pairs()
     positions = matrix_positions(
         rows,
@@ -111,7 +111,7 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
     shape = (len(found.combinations), len(pairs))
     table = found.ranking.scores.table
     measured = found.settings.get("dataset") or {}
-    # In a folder with several data sets, run.json is about the latest.
+    # In a folder with several datasets, run.json describes the latest run.
     known = measured.get("name") == entry.dataset
     return {
         "name": entry.name,
@@ -137,9 +137,9 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
 
 
 def _run(settings: Mapping[str, Any], pairs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """What ``run.json`` says but for long lists and the place of the images on this machine.
+    """The content of ``run.json`` without long lists and local paths.
 
-    It is about the latest run; the folder may hold the pairs of earlier ones, too.
+    It describes the latest run; the folder may also have pairs of earlier runs.
     """
     kept = {name: value for name, value in settings.items() if name not in LONG}
     dataset = dict(kept["dataset"])
@@ -151,7 +151,7 @@ def _run(settings: Mapping[str, Any], pairs: Sequence[Mapping[str, Any]]) -> dic
 
 
 def _timing(rows: pl.DataFrame) -> str:
-    """Where times come from; ``sampled`` where some pairs were timed alone and scale the others."""
+    """Source of the times; ``sampled`` if some pairs were timed alone and scale the others."""
     kinds = set(rows["timing"].to_list())
     if kinds == {None}:
         return "unknown"
@@ -178,7 +178,7 @@ def _medians(found: ReportEntry) -> dict[str, list[float | None]]:
 
 
 def _outcomes(rows: pl.DataFrame) -> dict[str, Any]:
-    """Rows by status, and those that are not ok by status and methods."""
+    """Number of rows by status, and of failed rows by status and methods."""
     counts = rows.group_by("status").len().sort("len", "status", descending=[True, False])
     failures = failures_of(rows)
     return {
@@ -189,7 +189,7 @@ def _outcomes(rows: pl.DataFrame) -> dict[str, Any]:
 
 
 def _excluded(settings: dict[str, Any]) -> list[dict[str, Any]]:
-    """What the images ruled out, by reason and number of pairs."""
+    """Combinations that could not run on these images, by reason and number of pairs."""
     together: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
     for exclusion in settings.get("exclusions") or []:
         together[exclusion["reason"], exclusion["pairs"]].append(exclusion["combination"])

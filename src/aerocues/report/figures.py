@@ -18,7 +18,7 @@ from aerocues.results.export import write_file
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Each gives None where the data have nothing of the kind.
+# Each returns None if the data for the figure are missing.
 FIGURES: Mapping[str, Callable[[ReportEntry], Figure | None]] = {
     "cues": draw_scores,
     "heat-maps": draw_heat_maps,
@@ -30,7 +30,7 @@ FIGURES: Mapping[str, Callable[[ReportEntry], Figure | None]] = {
     "models-relation": draw_relation,
 }
 FORMS: Mapping[str, Mapping[str, Any]] = {
-    # Without the date, the same data give the same file.
+    # Without the date the same data always give the same file.
     "svg": {"metadata": {"Date": None}},
     "pdf": {"metadata": {"CreationDate": None}},
 }
@@ -49,7 +49,7 @@ STYLE: dict[Any, Any] = {
     "pdf.fonttype": 42,
     "savefig.bbox": "tight",
     "svg.hashsalt": "aerocues",
-    # Names of data sets are no formulas.
+    # Names of datasets are not formulas.
     "text.parse_math": False,
 }
 ODD = re.compile(r"[^\w.]+")
@@ -62,20 +62,20 @@ def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Pa
     ----------
     entries : sequence of ReportEntry
     folder : path
-        Made where it is missing; files of the same name are replaced.
+        Created if it does not exist; files with the same names are replaced.
 
     Returns
     -------
     list of Path
-        The files: ``FIGURE.svg`` and ``FIGURE.pdf``, with the entry's name before them where
-        there are several.
+        The files ``FIGURE.svg`` and ``FIGURE.pdf``; with several entries the name of the entry is
+        prefixed.
 
     Raises
     ------
     MethodUnavailableError
         If matplotlib is not installed.
     StoreError
-        If the folder cannot be written.
+        If the folder is not writable.
     """
     try:
         from matplotlib import rc_context
@@ -112,7 +112,7 @@ def _write(figure: Figure, place: Path) -> list[Path]:
 
 
 def _prefixes(entries: Sequence[ReportEntry]) -> list[str]:
-    """What the names of the files of each entry begin with: nothing for a single one."""
+    """Prefix of the file names of each entry; empty for a single entry."""
     if len(entries) == 1:
         return [""]
     names = [ODD.sub("-", found.name).strip("-.") or "entry" for found in entries]

@@ -1,4 +1,4 @@
-"""A short text on results, for a pull request or a chat: the answer first."""
+"""A short summary of results for a pull request or a chat, with the answer first."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SPECIAL = re.compile(r"([\\`*_\[\]<>|#&~])")
 
 
 def summary(entries: Sequence[ReportEntry], title: str) -> str:
-    """The best combinations of each data set, how sure that is, and the settings.
+    """The best combinations of each dataset, their uncertainty, and the settings.
 
     Parameters
     ----------
@@ -82,17 +82,17 @@ def _others(found: ReportEntry) -> Iterator[str]:
     ranking, names = found.ranking, found.combinations
     alike, untested = ranking.indistinguishable(), ranking.untested()
     if alike:
-        yield f"- cannot be told from it on these pairs: {_listed(alike)}"
+        yield f"- not significantly different on these pairs: {_listed(alike)}"
     if untested:
-        yield f"- too few pairs to tell it from: {_listed(untested)}"
+        yield f"- too few pairs for a test against: {_listed(untested)}"
     if len(ranking.scores.order) > 1 and not alike and not untested:
-        yield "- better than every other one (corrected p < 0.05)"
+        yield "- significantly better than all others (corrected p < 0.05)"
     seconds = found.seconds()
     fast, binary = fastest_good(ranking, seconds), best_binary(ranking)
     if fast is not None:
         yield (
             f"- fastest with {100 * GOOD:.0f} % of its score: `{names[fast]}`, "
-            f"{seconds[names[fast]]:.3f} s for an image and a pair"
+            f"{seconds[names[fast]]:.3f} s per image and pair"
         )
     if binary is not None:
         yield f"- best binary descriptor: `{names[binary]}`"
@@ -100,12 +100,12 @@ def _others(found: ReportEntry) -> Iterator[str]:
 
 
 def _models(found: ReportEntry) -> Iterator[str]:
-    """The best models, and how many failed for what reason."""
+    """The best models, and the number of failures by reason."""
     rows = ordered_models(found)
     good = [row for row in rows if row["status"] == "ok"]
     yield f"3D models: {len(good)} of {len(rows)} reconstructions succeeded."
     for row in good[:NAMED]:
-        # Imported figures may lack any of these.
+        # Imported reconstructions may lack any of these.
         facts = []
         if row["registered_images"] is not None and row["images"] is not None:
             facts.append(f"{row['registered_images']} of {row['images']} images")
@@ -173,19 +173,19 @@ def _how(found: ReportEntry) -> str:
 def _across(comparison: Comparison) -> Iterator[str]:
     import polars as pl
 
-    yield "## Across all"
+    yield "## Across all datasets"
     yield ""
     frame = comparison.versatility().head(NAMED)
     shown = frame.select(
         pl.format("`{}`", "alternative").alias("combination"),
         pl.col("mean").alias("mean CUES"),
-        pl.col("min").alias("least CUES"),
+        pl.col("min").alias("lowest CUES"),
         pl.col("mean_rank").alias("mean rank"),
         pl.col("worst_rank").cast(pl.Int64).alias("worst rank"),
     )
     yield as_markdown(shown).rstrip()
     yield ""
-    yield "Spearman's rank correlation of the rankings:"
+    yield "Spearman's rank correlation between the rankings:"
     yield ""
     names = [_escaped(name) for name in comparison.names]
     columns = dict(zip(names, comparison.spearman(), strict=True))

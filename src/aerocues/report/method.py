@@ -1,4 +1,4 @@
-"""How it was all done: definitions, incompatible combinations, citation."""
+"""The section on the method: definitions, incompatible combinations, citation."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from aerocues.results.schema import COLUMNS
 from aerocues.results.statuses import STATUSES
 
 CITATION = (
-    "aerocues {version}, and the thesis that it grew out of: Towards Efficient 3D Reconstruction "
+    "aerocues {version}, and the thesis that it is based on: Towards Efficient 3D Reconstruction "
     "from UAV Imagery: Evaluation of Feature Detection, Description and Matching Combinations. "
     "PhD thesis, Cukurova University, 2026."
 )
 
 
 def method_facts(version: str, notes: Sequence[str]) -> dict[str, Any]:
-    """Definitions of columns, criteria and statuses, the citation, and what is to be noted."""
+    """Definitions of columns, criteria and statuses, citation, and notes."""
     better = {metric.name: metric.better for metric in METRICS}
     return {
         "columns": [
@@ -43,12 +43,12 @@ def method_facts(version: str, notes: Sequence[str]) -> dict[str, Any]:
 
 
 def incompatible(measured: Iterable[str]) -> dict[str, str]:
-    """Combinations of the methods that occur which cannot run or mean nothing, and why.
+    """Combinations of the measured methods that cannot run or are meaningless, with the reason.
 
     Parameters
     ----------
     measured : iterable of str
-        All combinations that were measured; they are left out.
+        All measured combinations, which are excluded.
     """
     names = set(measured)
     kinds = zip(*(name.split("-") for name in names), strict=True)

@@ -1,4 +1,4 @@
-"""Figures of 3D models for a paper: what became of each, and what matches say of it."""
+"""Figures of 3D models for a paper: quality of each model, and its relation to the matches."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MARKERS = {OK: ("o", COLOURS[0], "success"), "": ("x", COLOURS[5], "failed")}
 
 
 def ordered_models(found: ReportEntry) -> list[dict[str, Any]]:
-    """Reconstructions by success, registered images and points, with the combination's name."""
+    """Reconstructions sorted by success, registered images and points, with combination names."""
     rows = [{**row, "name": name_in_row(row)} for row in found.models.to_dicts()]
     return sorted(
         rows,
@@ -33,7 +33,7 @@ def ordered_models(found: ReportEntry) -> list[dict[str, Any]]:
 
 
 def draw_models(found: ReportEntry) -> Figure | None:
-    """Registered images and 3D points of the best models; None where there is none."""
+    """Registered images and 3D points of the best models; None if there are no models."""
     from matplotlib.figure import Figure
 
     rows = ordered_models(found)[:TOP]
@@ -60,7 +60,7 @@ def draw_models(found: ReportEntry) -> Figure | None:
 
 
 def draw_relation(found: ReportEntry) -> Figure | None:
-    """Inliers of pairs against 3D points, one dot a combination; None without models."""
+    """Inliers of pairs against 3D points, one dot per combination; None without models."""
     from matplotlib.figure import Figure
 
     known = [row for row in ordered_models(found) if row["points_3d"] is not None]
@@ -90,7 +90,7 @@ def draw_relation(found: ReportEntry) -> Figure | None:
 
 
 def _means(found: ReportEntry) -> tuple[str, dict[str, float]]:
-    """Mean inliers over the pairs that succeeded, beyond chance where that was measured."""
+    """Mean inliers over the successful pairs, beyond chance if that was measured."""
     import polars as pl
 
     rows = found.rows

@@ -1,4 +1,4 @@
-"""The table of 3D reconstructions, and what figures of pairs say of them, as the page has them."""
+"""The table of 3D reconstructions and their correlation with measured pairs, in the payload."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 OK = "ok"
 REFERENCE = "reference"
 UNIT_OF_MODEL = "model units"
-# In the unit that `length_unit` says, for want of a true scale.
+# Without a true scale these are in the unit in the column `length_unit`.
 DISTANCES = ("cloud_distance_", "reference_distance_")
-# How models were made; said once where it is the same for all.
+# How models were made; shown once if all models share the value.
 MADE = (
     *("preset", "pairing", "max_keypoints", "intrinsics", "mapper", "seed", "truth"),
     *("opencv_version", "colmap_version", "machine"),
@@ -36,7 +36,7 @@ COSTS = re.compile(r"_distance_|_seconds$|_error$")
 def model_facts(
     rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
 ) -> dict[str, Any] | None:
-    """Reconstructions of a dataset as the page has them; None where there are none.
+    """Reconstructions of a dataset in the payload; None if there are none.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def model_facts(
     models : pl.DataFrame
         Its reconstructions.
     chance_fails : bool
-        Whether a pair that does not beat chance has failed.
+        Whether a pair that does not beat chance counts as failed.
     """
     if models.is_empty():
         return None
@@ -86,7 +86,7 @@ def _column(column: Column, models: pl.DataFrame) -> dict[str, Any]:
 
 
 def _single(values: pl.Series) -> Any:
-    """The value that all of them have which have one; None if they differ."""
+    """The common value of all known ones; None if they differ."""
     known = values.drop_nulls().unique()
     return known[0] if len(known) == 1 else None
 

@@ -1,4 +1,4 @@
-"""The page: one HTML file with the template, the program, plotly and the payload in it."""
+"""The page: one HTML file from the template, the program, plotly and the payload."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from aerocues.errors import MethodUnavailableError
 from aerocues.report.program import program_of
 
 PLACE = re.compile(r"\{\{(title|style|payload|app|plotly)\}\}")
-# What would end the element that the text stands in.
+# Text that would end the surrounding element.
 END_OF_ELEMENT = re.compile(r"</(?=script|style)", re.IGNORECASE)
 
 
 def page_of(payload: Mapping[str, Any]) -> str:
-    """The whole page, which needs nothing else and asks for nothing else.
+    """The complete page, which loads nothing from elsewhere.
 
     Parameters
     ----------
     payload : mapping
-        As `payload.payload_of` gives it.
+        From `payload.payload_of`.
     """
     folder = files("aerocues.report") / "page"
     contents = {
@@ -38,7 +38,7 @@ def page_of(payload: Mapping[str, Any]) -> str:
 
 
 def payload_text(payload: Mapping[str, Any]) -> str:
-    """The payload as JSON that nothing in it can end or begin an element with."""
+    """The payload as JSON, in which no text can start or end an HTML element."""
     text = json.dumps(payload, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c")
 
@@ -60,8 +60,8 @@ def _plotly() -> str:
         from plotly.offline import get_plotlyjs
     except ImportError as error:
         raise MethodUnavailableError(
-            f"the page needs plotly ({error}); install it: pip install plotly, or report "
-            "where it is; --format markdown does without"
+            f"the page needs plotly ({error}); install it with: pip install plotly, or make the "
+            "report on another machine; --format markdown does not need it"
         ) from error
 
     return str(get_plotlyjs())

@@ -31,7 +31,7 @@ def payload_of(
     title : str
     pictures : Pictures, optional
     clouds : Clouds, optional
-        The notes of both are said in the section on the method.
+        Notes of both are shown in the section on the method.
     """
     version = version_of("aerocues")
     shown, modelled = pictures or Pictures(), clouds or Clouds()

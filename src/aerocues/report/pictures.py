@@ -1,4 +1,4 @@
-"""Pictures of keypoints and matches: the images opened again, the matches found again."""
+"""Pictures of keypoints and matches, by repeating the measurement."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from aerocues.results.combination_columns import combination_name
 
 MOST_KEYPOINTS = 1500
 MOST_MATCHES = 500
-# A repetition may take this many times what the measurement took, and this many seconds more.
+# Time limit of a repetition: this multiple of the measured time plus these seconds.
 PATIENCE = 10.0
 START_SECONDS = 60.0
 FIGURES = (
@@ -36,7 +36,7 @@ Row = Mapping[str, Any]
 
 @dataclass
 class Pictures:
-    """Pictures with their images, the most important first, and what is to be said of them."""
+    """Pictures with their images, the most important first, and notes."""
 
     images: dict[str, dict[str, Any]] = field(default_factory=dict)
     pictures: list[dict[str, Any]] = field(default_factory=list)
@@ -59,22 +59,22 @@ def pictures_of(
     ----------
     found : ReportEntry
     number : int
-        Combinations to show.
+        Number of combinations to show.
     moved : sequence of str
-        Where the images are now, if not where the results say; see `reopening.context_of`.
+        New locations of images that have moved; see `reopening.context_of`.
     told : callable
-        Told what is being done.
+        Called with a short description of each step.
     """
     result = Pictures()
     try:
         context = context_of(found, moved)
     except AerocuesError as error:
-        result.notes.append(f"{found.name}: no pictures, as {error}")
+        result.notes.append(f"{found.name}: no pictures: {error}")
         return result
     choices = chosen_pictures(found, number)
     drawn: dict[Choice, dict[str, Any]] = {}
     with DrawingProcess(context) as process:
-        # Those of one pair share features.
+        # Combinations on the same pair share features.
         for choice in sorted(choices, key=lambda each: [c.pair for c in choices].index(each.pair)):
             told(f"drawing {choice.combination} on pair {choice.pair} of {found.name}")
             try:
@@ -101,7 +101,7 @@ def _add_images(result: Pictures, found: ReportEntry, context: Context, choice: 
 
 
 def _picture(found: ReportEntry, process: DrawingProcess, choice: Choice) -> dict[str, Any]:
-    """One picture as the page has it; _UnrepeatableError where it cannot be had."""
+    """One picture of the payload; raises _UnrepeatableError if it cannot be drawn."""
     row = _measured_row(found, choice)
     seconds = sum(row[stage] or 0.0 for stage in STAGES)
     combination = Combination.parse(choice.combination)
@@ -140,27 +140,27 @@ def _measured_row(found: ReportEntry, choice: Choice) -> Row:
 
 
 def _difference(row: Row, drawn: DrawnMatches) -> str | None:
-    """How a repetition differs from what was measured, if only in what FLANN or MAGSAC++ found.
+    """How a repetition differs from the measurement, if only in matches or inliers.
 
     Raises
     ------
     _UnrepeatableError
-        If even the keypoints differ.
+        If the keypoints differ.
     """
     counts = drawn.counts()
     for name in ("keypoints_1", "keypoints_2"):
         if counts[name] != row[name]:
             raise _UnrepeatableError(
-                f"{counts[name]:,} keypoints now, {row[name]:,} when it was measured: the images, "
-                "the version of OpenCV or the machine differ, or the method does not repeat"
+                f"{counts[name]:,} keypoints now, {row[name]:,} when measured: the images, "
+                "the version of OpenCV or the machine differ, or the method is not repeatable"
             )
     differing = [name for name in ("matches", "inliers") if counts[name] != row[name]]
     if not differing:
         return None
     told = ", ".join(f"{row[name]} {name} when measured, {counts[name]} here" for name in differing)
-    return f"not quite repeatable: {told}"
+    return f"not fully repeatable: {told}"
 
 
 def _step(number: int, most: int) -> int:
-    """The smallest k for which every k-th is no more than `most`."""
+    """The smallest k for which taking every k-th leaves at most `most`."""
     return max(1, -(-number // most))

@@ -1,4 +1,4 @@
-"""The program of the page: its JavaScript modules, put together into one script."""
+"""The program of the page: JavaScript modules joined into one script."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from graphlib import TopologicalSorter
 from importlib.resources.abc import Traversable
 
 START = "start.js"
-# The one form of import and of export that the modules use.
+# The only forms of import and export that the modules use.
 IMPORT = re.compile(r'^import \{([^}]+)\} from "([^"]+)";\n', re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|const) (\w+))", re.MULTILINE)
 
 
 def program_of(folder: Traversable) -> str:
-    """`start.js` and every module that it imports, each in a scope of its own.
+    """`start.js` and all modules that it imports, each in its own scope.
 
-    A module becomes a function that is called once and returns what the module exports. Browsers
-    load no modules from a page that is opened as a file, and a bundler would need a build step.
+    Each module becomes a function that is called once and returns the exports. Browsers do not load
+    modules of a page that is opened as a file, and a bundler would need a build step.
 
     Parameters
     ----------
     folder : Traversable
-        Holds the modules; a module that nothing imports is left out.
+        Folder of the modules. Modules that are not imported are left out.
 
     Raises
     ------
     graphlib.CycleError
-        Two modules import each other.
+        If modules import each other.
     """
     sources = _sources(folder)
     imported = {name: _imports(name, text) for name, text in sources.items()}
@@ -36,7 +36,7 @@ def program_of(folder: Traversable) -> str:
 
 
 def _sources(folder: Traversable) -> dict[str, str]:
-    """Text of each module by its path in the folder."""
+    """Text of each module, by its path in the folder."""
     found: dict[str, str] = {}
     waiting = [START]
     while waiting:
@@ -52,7 +52,7 @@ def _imports(name: str, text: str) -> list[str]:
 
 
 def _resolved(name: str, path: str) -> str:
-    """The path of an imported module, which is relative to the folder of the importing one."""
+    """The path of an imported module; `path` is relative to the importing module."""
     return posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
 
 

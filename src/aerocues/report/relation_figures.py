@@ -1,4 +1,4 @@
-"""Figures of what a combination costs and how it stands to others."""
+"""Figures of the time of combinations and of their differences."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ LABELLED = 12
 
 
 def draw_pareto(found: ReportEntry) -> Figure | None:
-    """Time against quality, with the combinations that no other one beats in both.
+    """Time against quality, with the Pareto front.
 
-    Times are medians over all pairs; failed pairs count for the quality as they do for the score.
+    Times are medians over all pairs; failed pairs count for the quality as in the score.
     """
     from matplotlib.figure import Figure
     from matplotlib.ticker import StrMethodFormatter
@@ -57,7 +57,7 @@ def draw_pareto(found: ReportEntry) -> Figure | None:
     )
     axes.text(1.02, 1.0, listed, transform=axes.transAxes, va="top", fontsize=7, linespacing=1.5)
     axes.grid()
-    counted = " (failed pairs as the worst)" if scores.settings.failures == "worst" else ""
+    counted = " (failed pairs count as the worst)" if scores.settings.failures == "worst" else ""
     axes.set_xlabel("median seconds for one image (detect, describe) and one pair (match, verify)")
     axes.set_ylabel(criterion.replace("_", " ") + counted)
     axes.legend(loc="best")
@@ -66,7 +66,7 @@ def draw_pareto(found: ReportEntry) -> Figure | None:
 
 
 def _counted(scores: Scores, criterion: str) -> NDArray[np.float64]:
-    """(combinations,) means of a criterion in its unit, failures counted as for the score."""
+    """(combinations,) means of a criterion in its unit, with failures as in the score."""
     column = scores.table.criterion_names.index(criterion)
     values = scores.table.values[:, :, column]
     low, high = np.nanmin(values), np.nanmax(values)
@@ -75,7 +75,7 @@ def _counted(scores: Scores, criterion: str) -> NDArray[np.float64]:
 
 
 def draw_times(found: ReportEntry) -> Figure | None:
-    """Where the time of the best goes: stacked medians of the stages; None where not measured."""
+    """Stacked median times of the stages for the best combinations; None if not measured."""
     from matplotlib.figure import Figure
 
     best = found.ranking.frame("combination")["combination"].to_list()[:TOP]
@@ -112,7 +112,7 @@ def draw_times(found: ReportEntry) -> Figure | None:
 
 
 def draw_critical_difference(found: ReportEntry) -> Figure | None:
-    """Mean ranks of the best; bars join those that cannot be told apart (Demsar 2006)."""
+    """Mean ranks of the best; bars join groups without significant difference (Demsar 2006)."""
     from matplotlib.figure import Figure
 
     compared = found.validation.critical_difference
@@ -148,7 +148,7 @@ def draw_critical_difference(found: ReportEntry) -> Figure | None:
 
 
 def _label_ranks(axes: Any, compared: Any, first_label: float, left: int) -> None:
-    """Names on both sides, with lines up to their mean ranks."""
+    """Names on both sides, with lines to their mean ranks."""
     number = len(compared.alternatives)
     for position, (name, rank) in enumerate(
         zip(compared.alternatives, compared.mean_ranks, strict=True)

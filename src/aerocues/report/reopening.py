@@ -1,4 +1,4 @@
-"""The images of results, opened again as they were measured."""
+"""Opens the images of results again, as they were measured."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.report.entry import ReportEntry
 
-HINT = "name their place with --images, in the form that 'aerocues run' takes"
+HINT = "give their location with --images, in the form that 'aerocues run' takes"
 
 
 def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
-    """Everything that is needed to repeat measurements of an entry.
+    """The context to repeat measurements of an entry.
 
     Parameters
     ----------
     found : ReportEntry
     moved : sequence of str
-        Datasets in the form of `open_dataset`; the first with all images of the entry is taken in
-        place of the one that the results name.
+        Datasets in the form of `open_dataset`. The first one with all images of the entry replaces
+        the dataset that the results name.
 
     Raises
     ------
     DatasetError
-        If it is not known where the images are, or they are gone.
+        If the location of the images is unknown, or images are missing.
     SelectionError
-        If the results were measured under a preset that is not known here.
+        If the preset of the results is unknown here.
     """
     settings = found.settings
     measured = settings.get("dataset") or {}
     if settings.get("imported") or measured.get("name") != found.entry.dataset:
-        raise DatasetError("the measurements were imported, and their images are not known")
+        raise DatasetError("the measurements were imported and their images are unknown")
     preset = recorded_preset(settings)
     protocol = _protocol(settings["protocol"])
     return Context(
@@ -64,22 +64,22 @@ def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[st
             return dataset
     source = measured.get("source")
     if not source:
-        raise DatasetError(f"the results do not tell where the images are; {HINT}")
+        raise DatasetError(f"the results do not say where the images are; {HINT}")
     dataset = open_dataset(source["spec"], **options)
     if missing := _missing(dataset, found):
-        raise DatasetError(f"the image {missing} is gone; {HINT}")
+        raise DatasetError(f"the image {missing} is missing; {HINT}")
     return dataset
 
 
 def _missing(dataset: Dataset, found: ReportEntry) -> str | None:
-    """An image of the entry that the dataset does not have."""
+    """An image of the entry that is not in the dataset."""
     names = {image.name for image in dataset.images}
     needed = (pair[image] for pair in found.pairs() for image in ("image_1", "image_2"))
     return next((name for name in needed if name not in names), None)
 
 
 def _with_pairs(dataset: Dataset, pairs: Sequence[Mapping[str, Any]]) -> Dataset:
-    """The dataset with the pairs that were measured, however they were chosen then."""
+    """The dataset with exactly the measured pairs."""
     made = [
         Pair(pair["pair"], pair["image_1"], pair["image_2"], pair["sequence"]) for pair in pairs
     ]

@@ -30,7 +30,7 @@ def report_entries(
     progress: Progress | None = None,
     **changes: object,
 ) -> list[ReportEntry]:
-    """Score and validate every data set in some results, each machine by itself.
+    """Score and validate every dataset in the results, separately for each machine.
 
     Parameters
     ----------
@@ -39,24 +39,25 @@ def report_entries(
     preset, criteria
         See `aerocues.score`.
     reconstruction : bool, optional
-        Whether to add the criteria of reconstruction; by default, where there are results of one
-        data set only and most combinations were reconstructed.
+        Whether to add the criteria of reconstruction. By default they are added if the results have
+        one dataset and most combinations were reconstructed.
     resamples, seed
-        Of the intervals.
+        Settings of the intervals.
     progress : callable, optional
-        Told in a few words what is being done.
+        Called with a short description of each step.
     **changes
-        Of the preset's settings: ``alpha, weights, aggregation, failures``; None changes nothing.
+        Settings in place of the preset's: ``alpha, weights, aggregation, failures``. None keeps
+        those of the preset.
 
     Raises
     ------
     ScoreError
-        If one of them cannot be scored, or they suit different presets and none was chosen.
+        If results cannot be scored, or if they need different presets and none was chosen.
     """
     import polars as pl
 
     if not results:
-        raise ScoreError("there are no results to report on; name a results folder")
+        raise ScoreError("no results were given; name a results folder")
     told = progress or _silent
     told("reading and scoring")
     entries = entries_of(
@@ -82,7 +83,7 @@ def _silent(_: str) -> None:
 
 
 def default_title(entries: Sequence[ReportEntry]) -> str:
-    """The data sets by name."""
+    """A title with the names of the datasets."""
     names = ", ".join(dict.fromkeys(found.name for found in entries))
     return f"Local features on {names}"
 
@@ -103,25 +104,25 @@ def write_report(
     progress: Progress | None = None,
     **changes: object,
 ) -> Path:
-    """Write one page that shows everything, for a browser; it needs no network.
+    """Write everything into one HTML page, which needs no network.
 
     Parameters
     ----------
     results : Results or sequence of Results
-        Of one or several data sets and machines.
+        Results of one or several datasets and machines.
     output : path
-        An HTML file; one that is there is replaced.
+        HTML file; an existing file is replaced.
     title : str, optional
     preset, criteria, reconstruction, resamples, seed, **changes
         How to score; see `report_entries`.
     images : sequence of str
-        Where the images of data sets are that have moved, in the form of `open_dataset`.
+        New locations of images that have moved, in the form of `open_dataset`.
     pictures : int
-        How many combinations of each data set to show pictures of; 0 for none.
+        Number of combinations per dataset with pictures; 0 for none.
     max_megabytes : float
-        Clouds and pictures are left out until the page is no larger than this.
+        Clouds and pictures are left out until the page is at most this large.
     progress : callable, optional
-        Told in a few words what is being done.
+        Called with a short description of each step.
 
     Returns
     -------
@@ -131,7 +132,7 @@ def write_report(
     Raises
     ------
     AerocuesError
-        If the results cannot be scored or the file not be written.
+        If the results cannot be scored or the file cannot be written.
     """
     listed = [results] if isinstance(results, Results) else list(results)
     entries = report_entries(
@@ -165,7 +166,7 @@ def write_page(
     max_megabytes: float = MEGABYTES,
     progress: Progress | None = None,
 ) -> Path:
-    """Write the page of entries that are scored; see `write_report`."""
+    """Write the page of scored entries; see `write_report`."""
     from aerocues.datasets.catalog import open_dataset
     from aerocues.report.clouds import clouds_of
     from aerocues.report.page import page_of
@@ -175,18 +176,19 @@ def write_page(
 
     told = progress or _silent
     folder = output.expanduser().parent
-    if not folder.is_dir():  # told before the pictures, which take long
+    if not folder.is_dir():  # reported before the pictures, which take long
         raise StoreError(
-            f"cannot write {output}: there is no folder {folder}; make it or give another file"
+            f"cannot write {output}: the folder {folder} does not exist; create it or "
+            "give another file"
         )
     for spec in images:
-        open_dataset(spec)  # a wrong one is a mistake to be told, not a reason for no pictures
+        open_dataset(spec)  # a wrong location is an error, not just a reason for missing pictures
     found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
     told(f"writing {output}")
     heading = title or default_title(entries)
     page = page_of(payload_of(entries, heading)).encode()
     room = int(max_megabytes * 1e6) - len(page)
-    # Where there are pictures, too, clouds take half of the room at most.
+    # If there are pictures, clouds take at most half of the room.
     share = room // 2 if any(each.pictures for each in found) else room
     clouds = fitting_clouds([clouds_of(entry) for entry in entries], share)
     kept = fitting(found, room - sum(map(size_of, clouds.clouds)))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TOP = 20
-# Okabe and Ito, "Color universal design" (2008): told apart by the colour-blind.
+# Okabe and Ito, "Color universal design" (2008): distinct for every kind of colour vision.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000")
 WIDTH = 7.0
 LINE = 0.17
@@ -21,7 +21,7 @@ LEAST_CONTRAST = 0.55
 
 
 def draw_scores(found: ReportEntry) -> Figure:
-    """CUES of the best with 95 % intervals; filled where not told from the best."""
+    """CUES of the best with 95 % intervals; filled: not significantly different from the best."""
     from matplotlib.figure import Figure
 
     frame = found.ranking.frame("combination").head(TOP)
@@ -38,7 +38,7 @@ def draw_scores(found: ReportEntry) -> Figure:
     axes.set_yticks(range(len(frame)), frame["combination"].to_list())
     axes.set_ylim(len(frame) - 0.5, -0.5)
     axes.grid(axis="x")
-    axes.set_xlabel("CUES, 95 % interval (filled: cannot be told from the best)")
+    axes.set_xlabel("CUES, 95 % interval (filled: not significantly different from the best)")
     axes.set_title(_title(found))
     return figure
 
@@ -49,7 +49,7 @@ def _title(found: ReportEntry) -> str:
 
 
 def draw_heat_maps(found: ReportEntry) -> Figure:
-    """CUES by detector and descriptor, a panel for each norm and matcher; hatched: no score."""
+    """CUES by detector and descriptor, one panel per norm and matcher; hatched: no score."""
     from matplotlib.figure import Figure
 
     parts = [name.split("-") for name in found.combinations]

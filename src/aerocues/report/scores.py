@@ -1,4 +1,4 @@
-"""A ranking as the page has it: one value a combination, in the order of the table."""
+"""A ranking in the payload: one value per combination, in the order of the table."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ GOOD = 0.9
 
 
 def score_facts(ranking: Ranking, seconds: Mapping[str, float], preset: str) -> dict[str, Any]:
-    """The scores of all combinations and what may be said of the best.
+    """The scores of all combinations, and the best ones by several criteria.
 
     Parameters
     ----------
     ranking : Ranking
     seconds : mapping of str to float
-        Median time of each combination, where it is known.
+        Median time of each combination, where known.
     preset : str
-        Of scoring.
+        Scoring preset.
     """
     scores = ranking.scores
     table = scores.table
@@ -48,7 +48,7 @@ def score_facts(ranking: Ranking, seconds: Mapping[str, float], preset: str) -> 
     by_figure = {
         name: [rows.get(each, {}).get(name) for each in table.alternatives] for name in FIGURES
     }
-    # Known of those without a score, too.
+    # These are known for combinations without a score, too.
     by_figure["success_rate"] = table.success_rate.tolist()
     by_figure["repeats"] = table.tried.tolist()
     names = table.criterion_names
@@ -79,13 +79,13 @@ def _in_order(ranking: Ranking, positions: NDArray[np.int64]) -> list[int]:
 
 
 def fastest_good(ranking: Ranking, seconds: Mapping[str, float]) -> int | None:
-    """The fastest of those with `GOOD` of the best score and of its success rate; None if unknown.
+    """The fastest with at least `GOOD` of the best score and of its success rate; None if unknown.
 
     Parameters
     ----------
     ranking : Ranking
     seconds : mapping of str to float
-        Median time of each combination, where it is known.
+        Median time of each combination, where known.
     """
     scores, success = ranking.scores, ranking.scores.table.success_rate
     names = scores.table.alternatives
@@ -100,7 +100,7 @@ def fastest_good(ranking: Ranking, seconds: Mapping[str, float]) -> int | None:
 
 
 def best_binary(ranking: Ranking) -> int | None:
-    """The best whose descriptors are compared bit by bit; None if there is none."""
+    """The best combination with binary descriptors; None if there are none."""
     names = ranking.scores.table.alternatives
     binary = (
         int(position)
@@ -117,17 +117,17 @@ def method_labels(combinations: tuple[str, ...]) -> dict[str, list[str]]:
 
 
 def cautions(ranking: Ranking) -> list[str]:
-    """What the intervals do not tell."""
+    """Limits of the intervals."""
     table, resampled = ranking.scores.table, ranking.resampled
     blocks = len(set(table.blocks.tolist()))
     told = []
     if resampled.units < 2:
-        told.append("one pair says nothing of how sure the scores are")
+        told.append("with a single pair the uncertainty of the scores is unknown")
     elif resampled.unit != "block" and 1 < blocks < len(table.repeats):
         told.append(
-            f"pairs of one sequence are alike, so that with only {blocks} sequences the intervals "
+            f"pairs of one sequence are similar; with only {blocks} sequences the intervals "
             "are too narrow"
         )
     if not table.by_repeat.all():
-        told.append("of each reconstruction there is one figure: its luck is in no interval")
+        told.append("each combination was reconstructed once; the intervals exclude that variation")
     return told

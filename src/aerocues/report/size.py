@@ -1,4 +1,4 @@
-"""Keeps the page small enough to be mailed: pictures and clouds give way first."""
+"""Keeps the page small enough for email, by leaving out pictures and clouds."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from aerocues.report.pictures import Pictures
 
 
 def fitting(found: Sequence[Pictures], room: int) -> Pictures:
-    """As many pictures as there is room for, the most important of each entry first.
+    """As many pictures as fit, the most important of each entry first.
 
     Parameters
     ----------
     found : sequence of Pictures
-        One an entry.
+        One per entry.
     room : int
-        Bytes.
+        Number of bytes.
     """
     images = {key: image for each in found for key, image in each.images.items()}
     kept = Pictures(notes=[note for each in found for note in each.notes])
-    # The first of every entry come before the second of any.
+    # The first of every entry comes before the second of any.
     turns = chain.from_iterable(zip_longest(*(each.pictures for each in found)))
     left_out = 0
     for picture in filter(None, turns):
@@ -45,14 +45,14 @@ def fitting(found: Sequence[Pictures], room: int) -> Pictures:
 
 
 def fitting_clouds(found: Sequence[Clouds], room: int) -> Clouds:
-    """As many clouds as there is room for, the most important of each entry first.
+    """As many clouds as fit, the most important of each entry first.
 
     Parameters
     ----------
     found : sequence of Clouds
-        One an entry.
+        One per entry.
     room : int
-        Bytes.
+        Number of bytes.
     """
     kept = Clouds(notes=[note for each in found for note in each.notes])
     turns = list(filter(None, chain.from_iterable(zip_longest(*(each.clouds for each in found)))))
@@ -71,5 +71,5 @@ def fitting_clouds(found: Sequence[Clouds], room: int) -> Clouds:
 
 
 def size_of(facts: dict[str, Any]) -> int:
-    """Bytes as JSON, with the key and commas around it."""
+    """Number of bytes as JSON, including the key and commas."""
     return len(json.dumps(facts, separators=(",", ":"))) + 200

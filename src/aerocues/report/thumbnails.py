@@ -1,4 +1,4 @@
-"""Images small enough to stand in a page."""
+"""Small images for the page."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Thumbnail:
     width, height : int
         Pixels.
     scale : float
-        Pixels of it per pixel of the image as it was measured.
+        Its pixels per pixel of the measured image.
     """
 
     src: str
@@ -33,17 +33,17 @@ class Thumbnail:
     scale: float
 
     def facts(self) -> dict[str, Any]:
-        """As the page has it."""
+        """Its form in the payload."""
         return asdict(self)
 
 
 def thumbnail(image: Image) -> Thumbnail:
-    """The image as it is measured (size, equalisation), shrunk and compressed.
+    """The image as measured (size, equalisation), shrunk and compressed.
 
     Raises
     ------
     ImageError
-        If it cannot be read.
+        If the image cannot be read.
     """
     from PIL import Image as Pillow
 

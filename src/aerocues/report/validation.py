@@ -1,4 +1,4 @@
-"""What tells how far a ranking can be trusted, as the page has it."""
+"""Results of the validation of a ranking, in the payload."""
 
 from __future__ import annotations
 

@@ -168,7 +168,7 @@ interface CriticalDifference {
   alternatives: string[];
   mean_ranks: number[];
   critical_difference: number;
-  /** First and last of those that cannot be told apart. */
+  /** First and last of each group without significant difference. */
   groups: [number, number][];
   units: number;
   chi_square: Value;
