@@ -1,4 +1,4 @@
-"""Which of the rows that were measured count: one a planned row."""
+"""Selects the measured row that counts for each planned row."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
 
 
 def best_rows(planned: pl.DataFrame, measured: pl.DataFrame) -> pl.DataFrame:
-    """The measured ones among the planned rows, each once, in order.
+    """The measured rows of the plan, each once and in order.
 
-    Where a row was measured more than once, one that did not fail counts before one that did,
-    better times before worse ones (`protocol.TIMINGS`), and then the latest. Where others of its
+    If a row was measured several times, successful measurements come before failed ones, better
+    timings before worse ones (`timing.TIMINGS`), and then the latest. If other rows of the
     combination were timed exclusively, its times are scaled (`scaled_times`).
 
     Parameters
     ----------
     planned : pl.DataFrame
-        As `planned_rows.planned_table` makes it.
+        Made by `planned_rows.planned_table`.
     measured : pl.DataFrame
-        Columns as in `schema.COLUMNS`; what its rows are called is as they were measured.
+        Columns as in `schema.COLUMNS`, with the names of the rows when they were measured.
 
     Returns
     -------
     pl.DataFrame
-        Columns as in `schema.COLUMNS`, what rows are called as planned; sorted by that.
+        Columns as in `schema.COLUMNS`, with the names of the rows in the plan; sorted by them.
     """
     import polars as pl
 
-    # Whole rows are taken last: there may be a million, of seventy columns.
+    # Full rows are read last: there may be a million rows with seventy columns.
     keys = measured.select("row_key", "status", "timing", "measured_at").with_row_index("place")
     keys = keys.join(planned.select("row_key"), on="row_key", how="semi", maintain_order="left")
     best = (

@@ -1,4 +1,4 @@
-"""Sparse clouds of reconstructions with their cameras, as small files beside the measurements."""
+"""Sparse clouds of reconstructions with their cameras, as small files in the results folder."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ Float32Array = NDArray[np.float32]
 class Cloud:
     """The points and cameras of one model.
 
-    The frame is east, north, up in metres where positions of the images are known; else that of
-    the model.
+    If positions of the images are known, the frame is east, north, up in metres; otherwise it is
+    that of the model.
 
     Parameters
     ----------
     points : (N, 3) float32
     colours : (N, 3) uint8
-        Red, green, blue; gray where they were not taken from the images.
+        Red, green, blue; gray if they were not taken from the images.
     errors : (N,) float32
         Mean reprojection error in pixels.
     track_lengths : (N,) int32
-        Images that see the point.
+        Number of images that see the point.
     distances : (N,) float32
-        To the nearest point of the reference's cloud; NaN where there is none.
+        Distance to the nearest point of the reference cloud; NaN if there is no reference.
     centres : (C, 3) float32
         Centres of the cameras.
     rotations : (C, 3, 3) float32
-        From the camera (x right, y down, z forward) to the frame of the points.
+        Rotation from the camera (x right, y down, z forward) to the frame of the points.
     names : (C,) str
         Names of the images.
     positions : (C, 3) float32
@@ -46,7 +46,7 @@ class Cloud:
     view : (3,) float32
         Focal length, width and height of the first camera in pixels.
     unit : str
-        ``m``, or ``unit`` where the scale is not known.
+        ``m``, or ``unit`` if the scale is unknown.
     """
 
     points: Float32Array
@@ -80,11 +80,11 @@ class Cloud:
                 raise ValueError(f"{name} must have shape {shape}, not {getattr(self, name).shape}")
 
     def with_distances(self, distances: NDArray[np.floating[Any]]) -> Cloud:
-        """The same cloud with other distances to a reference."""
+        """The same cloud with other distances to the reference."""
         return replace(self, distances=np.asarray(distances, np.float32))
 
     def content(self) -> bytes:
-        """The cloud as the content of a file; the same cloud gives the same bytes."""
+        """The content of a file with this cloud; equal clouds give equal bytes."""
         file = io.BytesIO()
         arrays: dict[str, Any] = {
             field.name: np.asarray(getattr(self, field.name)) for field in fields(self)
@@ -94,7 +94,7 @@ class Cloud:
 
 
 def read_cloud(content: bytes, where: str | Path) -> Cloud:
-    """The cloud in the content of a file; StoreError where it is damaged."""
+    """The cloud from the content of a file; StoreError if it is damaged."""
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             found = {field.name: arrays[field.name] for field in fields(Cloud)}

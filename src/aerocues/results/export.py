@@ -21,12 +21,12 @@ WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
     "markdown": lambda table, file: file.write(as_markdown(table).encode()),
     "latex": lambda table, file: file.write(as_latex(table).encode()),
 }
-# These hold lists and the like, too.
+# These formats can also hold lists and other nested values.
 FORMS_OF_ANYTHING = ("parquet", "json")
 
 
 def table_content(table: pl.DataFrame, form: str) -> memoryview:
-    """A table as the content of a file; StoreError where it has no place in that form."""
+    """A table as the content of a file; StoreError if the format cannot hold it."""
     import polars as pl
 
     content = io.BytesIO()
@@ -42,7 +42,7 @@ def table_content(table: pl.DataFrame, form: str) -> memoryview:
 
 
 def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
-    """Write a table to a file; one that is there is replaced, whole or not at all.
+    """Write a table to a file. An existing file is replaced atomically.
 
     Parameters
     ----------
@@ -50,19 +50,19 @@ def export_table(table: pl.DataFrame, target: Path, form: str) -> None:
     target : path
         A file, or a device or pipe.
     form : {"csv", "parquet", "json", "markdown", "latex"}
-        The last two are for people: numbers are rounded to four digits.
+        The last two are for reading: numbers are rounded to four digits.
 
     Raises
     ------
     StoreError
-        If it cannot be written, or the form has no place for what it holds.
+        If the file cannot be written, or the format cannot hold the table.
     """
-    # Not to the file at once: polars has errors of its own for a disk that is full.
+    # Not directly to the file, because polars has its own errors for a full disk.
     write_file(target, table_content(table, form))
 
 
 def write_file(target: Path, content: bytes | memoryview) -> None:
-    """Write a file, whole or not at all, or to a device or pipe; StoreError if that fails."""
+    """Write a file atomically, or write to a device or pipe; StoreError if that fails."""
     path = target.expanduser().resolve()  # a link stays a link
     is_special = path.exists() and not path.is_file() and not path.is_dir()
     beside = path if is_special else path.with_name(f".{path.name}.{os.getpid()}.tmp")

@@ -1,4 +1,4 @@
-"""Files in a results folder: written whole, read with errors that say what to do."""
+"""Files in a results folder: written atomically, read with errors that say what to do."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class FolderFiles:
-    """A folder whose files are written beside and renamed."""
+    """A folder whose files are written under another name and then renamed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -24,7 +24,8 @@ class FolderFiles:
         except OSError as error:
             reason = error.strerror or str(error)
             raise StoreError(
-                f"cannot write {target}: {reason}; what was finished is kept: make room or access "
+                f"cannot write {target}: {reason}; finished work is kept: free space or grant "
+                "access "
                 "and run the same command again"
             ) from error
 

@@ -1,4 +1,4 @@
-"""One process at a time may write to a folder."""
+"""A lock that lets only one process write to a folder."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ LOCK = ".lock"
 
 @contextlib.contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Keep other runs out of a folder; the lock goes with the block or the process.
+    """Lock a folder against other runs, until the block or the process ends.
 
     Raises
     ------
     StoreError
-        If another process is writing to the folder, or it cannot be written.
+        If another process is writing to the folder, or the folder is not writable.
     """
     try:
         file = (folder / LOCK).open("w")
@@ -37,11 +37,11 @@ def folder_lock(folder: Path) -> Iterator[None]:
 
 
 def _locked(file: IO[str]) -> bool:
-    """Whether the lock could be had."""
+    """Whether the lock was acquired."""
     try:
         import fcntl
     except ImportError:
-        return True  # no such locks on this system
+        return True  # this system has no such locks
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -1,4 +1,4 @@
-"""Rows that were measured elsewhere, completed with what follows from them."""
+"""Rows measured by other programs, completed with derived columns."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ VALUES = (
 )
 REQUIRED = ("dataset", *METHODS, "pair", *VALUES)
 RATIOS = ("precision", "recall", "repeatability", "f1_score")
-FAILED = "it failed where it was measured"
+FAILED = "it failed when it was measured"
 
 
 def completed_rows(table: TableFile) -> pl.DataFrame:
     """The rows of a table in the columns of `schema.COLUMNS`.
 
-    A row without any of the required values is an error where it was measured, unless it says
-    something else. Images without a name are called after the number of the pair.
+    A row without any of the required values gets the status ``error``, unless it has another
+    status. Images without a name are named after the number of the pair.
 
     Raises
     ------
     StoreError
-        If columns are missing or unknown, a value does not fit or a row comes twice.
+        If columns are missing or unknown, a value is invalid or a row occurs twice.
     """
     rows = named_methods(table, in_columns(table, COLUMNS, REQUIRED))
     _check_values(table, rows)
@@ -59,9 +59,9 @@ def _check_values(table: TableFile, rows: pl.DataFrame) -> None:
 
     known = [status.name for status in STATUSES]
     checks = (
-        (pl.col("pair").is_null(), "has no number of its pair"),
+        (pl.col("pair").is_null(), "has no pair number"),
         *(
-            (pl.col(name) > 1, f"has a {name} above 1; it is a ratio, not percent")
+            (pl.col(name) > 1, f"has a {name} above 1; it must be a ratio, not percent")
             for name in RATIOS
         ),
         *(
@@ -72,7 +72,7 @@ def _check_values(table: TableFile, rows: pl.DataFrame) -> None:
         (pl.col("inliers") > pl.col("matches"), "has more inliers than matches"),
         (
             ~pl.col("status").is_in(known),
-            f"has an unknown status; there are {', '.join(known)}",
+            f"has an unknown status; choose from: {', '.join(known)}",
         ),
     )
     for wrong, what in checks:

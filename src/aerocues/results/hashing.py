@@ -1,4 +1,4 @@
-"""Keys that are made of content."""
+"""Keys that are hashes of content."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ KEY_LENGTH = 32
 
 
 def content_hash(content: object) -> str:
-    """Hexadecimal hash of anything that JSON can write."""
+    """Hexadecimal hash of any JSON value."""
     text = json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:KEY_LENGTH]

@@ -1,4 +1,4 @@
-"""Measurement tables made elsewhere, as results folders."""
+"""Makes results folders from measurement tables of other programs."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from aerocues.results.whole_files import write_whole
 if TYPE_CHECKING:
     import polars as pl
 
-# What a folder may be called on any system.
+# Characters that a folder name may have on any system.
 ODD = re.compile(r"[^\w.+]+")
 LONGEST_NAME = 80
 
 
 @dataclass(frozen=True)
 class _Import:
-    """The rows of one dataset on one platform, and where they go."""
+    """The rows of one dataset on one platform, and their folder."""
 
     dataset: str
     platform: str | None
@@ -47,23 +47,24 @@ class _Import:
 
 @dataclass(frozen=True)
 class _Figures:
-    """Figures of reconstructions, and the file that they are from."""
+    """Reconstructions from a file."""
 
     table: TableFile
     rows: pl.DataFrame
 
     def check(self, datasets: Iterable[str]) -> None:
-        """StoreError if there is none for any of the datasets."""
+        """StoreError if it has no reconstructions of any of the datasets."""
         wanted = list(dict.fromkeys(datasets))
         if not self.rows["dataset"].is_in(wanted).any():
             there = ", ".join(self.rows["dataset"].unique().sort())
             raise self.table.wrong(
-                f"has figures of {there} only, none of {', '.join(wanted)}; give the file of these "
+                f"has reconstructions of {there} only, not of {', '.join(wanted)}; give the file "
+                "of these "
                 "datasets or rename them"
             )
 
     def of(self, dataset: str) -> pl.DataFrame | None:
-        """The figures of one dataset, if there are any."""
+        """The reconstructions of one dataset; None if there are none."""
         import polars as pl
 
         found = self.rows.filter(pl.col("dataset") == dataset)
@@ -78,22 +79,22 @@ def import_results(
     dataset: str | None = None,
     platform: str | None = None,
 ) -> list[Results]:
-    """Make results folders of a table of measurements.
+    """Make results folders from a table of measurements.
 
     Parameters
     ----------
     file : path
-        CSV or Parquet, one row a combination and pair. Columns ``dataset, detector, descriptor,
+        CSV or Parquet, one row per combination and pair. Columns ``dataset, detector, descriptor,
         norm, matcher, pair, precision, recall, repeatability, f1_score, inliers, matches,
-        seconds_per_1k_matches, seconds_per_1k_inliers``; and, if need be, ``platform`` (or
-        ``machine``) and any other of `schema.COLUMNS`.
+        seconds_per_1k_matches, seconds_per_1k_inliers``; optionally ``platform`` (or ``machine``)
+        and any other column of `schema.COLUMNS`.
     output : path
-        The results folder; where the table has several datasets or platforms, a folder with one
-        results folder for each, called DATASET-PLATFORM. The same import replaces itself.
+        The results folder. If the table has several datasets or platforms: a folder with one
+        results folder for each, named DATASET-PLATFORM. The same import can be repeated.
     reconstruction : path, optional
-        Figures of reconstructions; see `reconstructions.read_reconstructions`.
+        Table of reconstructions; see `reconstructions.read_reconstructions`.
     dataset, platform : str, optional
-        Import these only.
+        Import only these.
 
     Returns
     -------
@@ -103,8 +104,8 @@ def import_results(
     Raises
     ------
     StoreError
-        If a file cannot be read or does not fit, or the output is in use for something else.
-        Nothing has been written or replaced then.
+        If a file cannot be read or is invalid, or the output folder has other content. In this case
+        nothing is written.
     """
     table = read_table_file(Path(file), OTHER_NAMES)
     rows = completed_rows(table)
@@ -121,7 +122,7 @@ def import_results(
 
 
 def _chosen(table: TableFile, rows: pl.DataFrame, what: str, name: str | None) -> pl.DataFrame:
-    """The rows of a dataset or platform; all if none is named."""
+    """The rows of a dataset or platform; all rows if no name is given."""
     import polars as pl
 
     if name is None:
@@ -149,7 +150,7 @@ def _divided(rows: pl.DataFrame, output: Path) -> list[_Import]:
 
 
 def _folder_name(title: str, taken: Sequence[str]) -> str:
-    """A name that any file system takes, and that is not taken in capitals or small letters."""
+    """A folder name that is valid on any file system and unique regardless of case."""
     name = ODD.sub("-", title)[:LONGEST_NAME].strip("-. ") or "unnamed"
     names = chain([name], (f"{name}-{number}" for number in count(2)))
     used = {other.casefold() for other in taken}
@@ -157,7 +158,7 @@ def _folder_name(title: str, taken: Sequence[str]) -> str:
 
 
 def _check_places(output: Path, imports: Sequence[_Import]) -> None:
-    """Refuse to write into what is in use for something else; StoreError."""
+    """Raise StoreError if a folder has other content."""
     if len(imports) > 1 and output.is_dir():
         if (output / RUN).is_file():
             raise StoreError(
@@ -176,7 +177,7 @@ def _check_places(output: Path, imports: Sequence[_Import]) -> None:
 def _check_place(one: _Import) -> None:
     folder, another = one.folder, "give -o another folder"
     if not folder.is_dir():
-        return  # a file is refused where the folder is made
+        return  # a file is refused when the folder is created
     others = [path.name for path in folder.iterdir() if path.name not in OWN]
     if others:
         raise StoreError(f"{folder} holds other files ({others[0]}, ...); {another}")
@@ -194,7 +195,7 @@ def _check_place(one: _Import) -> None:
 
 
 def _keyed(rows: pl.DataFrame, key: str) -> pl.DataFrame:
-    """The rows with their own keys where each has one, as from a results folder; else new ones."""
+    """The rows with their own keys if every row has one (as from results), else new keys."""
     import polars as pl
 
     keys, settings = rows["row_key"], rows["settings_key"]
@@ -209,7 +210,7 @@ def _keyed(rows: pl.DataFrame, key: str) -> pl.DataFrame:
 
 
 def _content(one: _Import, table: TableFile, figures: _Figures | None) -> dict[str, bytes]:
-    """The files of a results folder. Reconstructions that it has stay where there are no others."""
+    """The files of a results folder. Existing reconstructions are kept if no new ones are given."""
     import polars as pl
 
     key = content_hash([IMPORTED, one.dataset, one.platform])
@@ -249,7 +250,7 @@ def _facts(one: _Import, rows: pl.DataFrame) -> dict[str, Any]:
 
 
 def _write(contents: Mapping[Path, Mapping[str, bytes]]) -> None:
-    """Write all folders or none."""
+    """Write all folders or none of them."""
     with ExitStack() as undo, ExitStack() as locks:
         for folder in contents:
             made = _outermost_missing(folder)
@@ -266,13 +267,14 @@ def _write(contents: Mapping[Path, Mapping[str, bytes]]) -> None:
         except OSError as error:
             raise StoreError(
                 f"cannot write to {error.filename or next(iter(contents))}: "
-                f"{error.strerror or error}; nothing was imported: make room or access and import "
+                f"{error.strerror or error}; nothing was imported: free space or grant access and "
+                "import "
                 "again"
             ) from error
         undo.pop_all()
 
 
 def _outermost_missing(folder: Path) -> Path | None:
-    """The folder that would have to be removed to undo the making of `folder`."""
+    """The folder whose removal would undo the creation of `folder`."""
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     return missing[-1] if missing else None

@@ -1,4 +1,4 @@
-"""Measured results: the rows of a folder, and how far a run has got."""
+"""Measured results: the rows of a folder, and the progress of a run."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 
 def timing_counts(table: pl.DataFrame) -> tuple[dict[str, int], int]:
-    """Rows by where their times come from, and those of which a stage had to share its core."""
+    """Number of rows by source of their times, and of rows with a stage that shared its core."""
     timings = dict(sorted(table["timing"].drop_nulls().value_counts().iter_rows()))
     return timings, int((table["wall_over_cpu"] > DISTURBED).sum())
 
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How far a run has got.
+    """Progress of a run.
 
-    ``statuses`` counts rows by status; ``failures`` counts the rows that ended otherwise than ok,
-    by status, detector and descriptor, with an example message. ``timings`` counts rows by where
-    their times come from, and ``disturbed`` those of which a stage never had a core to itself.
-    ``untimed`` counts those that are done, but are still to be timed by themselves.
+    ``statuses`` counts rows by status; ``failures`` counts failed rows by status, detector and
+    descriptor, with an example message. ``timings`` counts rows by the source of their times;
+    ``disturbed`` counts rows with a stage that never had a core to itself. ``untimed`` counts
+    finished rows whose exclusive timing is still missing.
     """
 
     planned: int
@@ -57,12 +57,12 @@ class Results:
     Parameters
     ----------
     folder : path
-        The folder, or the file that `pack` made of it.
+        The folder, or a file made by `pack`.
 
     Raises
     ------
     StoreError
-        If `folder` is no results folder and no packed one.
+        If `folder` is neither a results folder nor packed results.
     """
 
     def __init__(self, folder: str | Path) -> None:
@@ -76,7 +76,7 @@ class Results:
 
     @property
     def folder(self) -> Path:
-        """The folder, or the packed file, that was opened."""
+        """The opened folder or packed file."""
         return self._path
 
     @property
@@ -85,31 +85,31 @@ class Results:
         return self._store.run()
 
     def table(self) -> pl.DataFrame:
-        """One row a pair and combination, in a fixed order; columns as in `schema.COLUMNS`."""
+        """One row per pair and combination, in a fixed order; columns as in `schema.COLUMNS`."""
         return self._store.table()
 
     def reconstructions(self) -> pl.DataFrame:
-        """One row a dataset and combination, see `reconstruction_schema.RECONSTRUCTIONS`."""
+        """One row per dataset and combination, see `reconstruction_schema.RECONSTRUCTIONS`."""
         return self._store.reconstructions()
 
     def cloud(self, row_key: str) -> Cloud | None:
-        """The cloud of the reconstruction whose row has this key; None where there is none."""
+        """The cloud of the reconstruction with this row key; None if it has no cloud."""
         return self._store.cloud(row_key)
 
     def pack(self, file: str | Path) -> Path:
-        """Write everything that the folder holds into one file, for `Results` to open elsewhere.
+        """Write the content of the folder into one file, which `Results` can open elsewhere.
 
-        Unzipped, it is a results folder again, which `aerocues.run` continues.
+        Unzipped, it is a results folder again, which `aerocues.run` can continue.
 
         Parameters
         ----------
         file : path
-            A zip file; one that is there is replaced, whole or not at all.
+            Zip file to write. An existing file is replaced atomically.
 
         Raises
         ------
         StoreError
-            If the folder cannot be read or the file not be written.
+            If the folder cannot be read or the file cannot be written.
         """
         from aerocues.results.export import write_file
         from aerocues.results.packing import packed
@@ -118,19 +118,19 @@ class Results:
         return Path(file)
 
     def sql(self, query: str) -> pl.DataFrame:
-        """Answer a SQL query over the tables ``results`` and ``reconstructions``.
+        """Answer an SQL query over the tables ``results`` and ``reconstructions``.
 
         Raises
         ------
         StoreError
-            If the query does something else than to read, or cannot be understood.
+            If the query is not a read-only query, or fails.
         """
         from aerocues.results.queries import answer
 
         return answer(query, {"results": self.table(), "reconstructions": self.reconstructions()})
 
     def status(self) -> RunStatus:
-        """How many rows are done, left and failed, by reason."""
+        """Numbers of finished, remaining and failed rows, failures by reason."""
         import polars as pl
 
         table = self.table()

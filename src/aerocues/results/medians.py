@@ -1,4 +1,4 @@
-"""Medians of each combination over its pairs: what it finds, and where its time goes."""
+"""Medians of each combination over its pairs: counts, ratios and times."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PAIR = ("dataset", "image_1", "image_2")
 
 
 def one_image_seconds(stage: str) -> pl.Expr:
-    """Median seconds of ``detect`` or ``describe`` for one image: the mean of the two of a pair."""
+    """Median seconds of ``detect`` or ``describe`` per image (mean of the two images of a pair)."""
     import polars as pl
 
     both = pl.col(f"{stage}_seconds_1") + pl.col(f"{stage}_seconds_2")
@@ -26,16 +26,16 @@ def combination_medians(table: pl.DataFrame, top: int | None = None) -> pl.DataF
     Parameters
     ----------
     table : pl.DataFrame
-        Rows of one dataset, as `Results.table` gives them.
+        Rows of one dataset from `Results.table`.
     top : int, optional
-        How many to keep; all by default.
+        Number of rows to keep; all by default.
 
     Returns
     -------
     pl.DataFrame
-        One row a combination, the best first: ``combination, pairs, success_rate``; the medians
+        One row per combination, the best first: ``combination, pairs, success_rate``; the medians
         ``precision, matches, inliers``, in which a pair whose status is not ``ok`` counts as 0;
-        and the medians in seconds, over the pairs where they were measured, ``total_seconds,
+        and the medians in seconds over the pairs with times, ``total_seconds,
         detect_seconds, describe_seconds`` (one image: the mean of the two), ``match_seconds,
         verify_seconds``. Ties are broken by inliers, then matches, then the name.
     """

@@ -1,4 +1,4 @@
-"""Metrics that follow from the counts and times of a row: one row each."""
+"""Metrics that are derived from the counts and times of a row: one row each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STAGES_OF_PAIRS = ("match", "verify")
 
 @dataclass(frozen=True)
 class Metric:
-    """One derived metric; ``compute`` gives None where it is not defined."""
+    """One derived metric; ``compute`` returns None if it is undefined."""
 
     name: str
     unit: str
@@ -150,7 +150,7 @@ METRICS: tuple[Metric, ...] = (
 
 
 def add_metrics(row: Row) -> Row:
-    """Fill in every metric that follows from what the row holds already."""
+    """Fill in all metrics that follow from the values of the row."""
     for metric in METRICS:
         row[metric.name] = metric.compute(row)
     return row

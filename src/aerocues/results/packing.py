@@ -1,4 +1,4 @@
-"""A results folder as one file, to carry it to another machine."""
+"""Packs a results folder into one file, to move it to another machine."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MEMBER = re.compile(
     rf"{re.escape(PLAN)}|{re.escape(RECONSTRUCTED)}|{RUN}|{PARTS}/[^/]+\.parquet|{CLOUDS}/[^/]+\.npz"
 )
 EARLIEST = (1980, 1, 1, 0, 0, 0)
-# What zipfile raises on damage; RuntimeError stands for encryption.
+# Errors of zipfile for damaged files; RuntimeError means encryption.
 BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError)
 
 
@@ -37,7 +37,7 @@ def folder_content(
 ) -> dict[str, bytes]:
     """The files of a results folder with a single part, by name.
 
-    ``run.json``, without which there is no results folder, comes last.
+    ``run.json`` comes last, because a folder without it is not a results folder.
     """
     content = {SINGLE_PART: parquet_content(rows), PLAN: parquet_content(plan)}
     if reconstructions is not None:
@@ -46,7 +46,7 @@ def folder_content(
 
 
 def packed(store: Store) -> bytes:
-    """A results folder with all that it holds as a zip file; the same content gives the same file.
+    """A results folder with all its content as a zip file; equal content gives equal files.
 
     Raises
     ------
@@ -69,18 +69,18 @@ def packed(store: Store) -> bytes:
 
 
 def unpack(file: Path) -> Path:
-    """Put a packed results folder into a new temporary folder, which is the caller's to remove.
+    """Unpack a results folder into a new temporary folder, which the caller must remove.
 
     Parameters
     ----------
     file : path
-        As `packed` made it, or a zip file of a results folder made by hand.
+        A file from `packed`, or a zip file of a results folder made by hand.
 
     Raises
     ------
     StoreError
-        If it is no such file, is damaged, has a member that would land elsewhere, or there is no
-        room.
+        If it is not such a file, is damaged, has a member outside of the folder, or the disk is
+        full.
     """
     folder = Path(tempfile.mkdtemp(prefix="aerocues-packed-"))
     try:
@@ -101,32 +101,34 @@ def _extract(file: Path, folder: Path) -> None:
                     shutil.copyfileobj(content, copy)
     except BROKEN as error:
         raise StoreError(
-            f"{file} is no results folder and no packed one ({error}); give a results folder, pack "
+            f"{file} is neither a results folder nor packed results ({error}); give a results "
+            "folder, pack "
             "it again, or read a table with 'aerocues import'"
         ) from error
     except OSError as error:
         raise StoreError(
-            f"cannot unpack {file}: {error.strerror or error}; make room or access, or unzip it "
+            f"cannot unpack {file}: {error.strerror or error}; free space or grant access, or "
+            "unzip it "
             "and name the folder"
         ) from error
 
 
 def _members(file: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
-    """The files of the results folder in an archive, by name; others are passed over."""
+    """The files of the results folder in an archive, by name; other files are ignored."""
     paths = {PurePosixPath(member.filename): member for member in archive.infolist()}
     for path in paths:
         if path.is_absolute() or ".." in path.parts:
             raise StoreError(f"{file} would write to {path}, outside; do not use it")
-    # Made by hand, the folder itself is often in it.
+    # Archives made by hand often contain the folder itself.
     tops = [path.parent for path in paths if path.name == RUN and len(path.parts) <= 2]
     if len(tops) != 1:
         what = f"several files {RUN}" if tops else f"no {RUN}"
-        raise StoreError(f"{file} is no packed results folder ({what}); pack one anew")
+        raise StoreError(f"{file} is not a packed results folder ({what}); pack it again")
     inner = {
         str(path.relative_to(tops[0])): member
         for path, member in paths.items()
         if path.is_relative_to(tops[0])
     }
     if PLAN not in inner:
-        raise StoreError(f"{file} is no packed results folder (no {PLAN}); pack it again")
+        raise StoreError(f"{file} is not a packed results folder (no {PLAN}); pack it again")
     return {name: member for name, member in inner.items() if MEMBER.fullmatch(name)}

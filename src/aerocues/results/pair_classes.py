@@ -1,4 +1,4 @@
-"""Classes of pairs: two images that face the same way, or turned against each other."""
+"""Classes of pairs by the rotation between the two images."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ PairClass = Literal["turned", "other"]
 PAIR_CLASSES: tuple[PairClass, ...] = ("turned", "other")
 TURNED = 60.0
 """Degrees. Neighbouring strips of a survey are turned by about 180; methods without orientation
-bear 15 to 40 degrees, and turns of cross strips are near 90."""
+tolerate 15 to 40 degrees; cross strips are turned by about 90."""
 
 
 def pair_class(turn: float) -> PairClass:

@@ -1,4 +1,4 @@
-"""The table of the rows that a results folder is to hold."""
+"""The table of planned rows of a results folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TIMED_ALONE = "timed_alone"
 
 
 def with_all_columns(plan: pl.DataFrame) -> pl.DataFrame:
-    """A plan as it is now; older ones do not say what is to be timed by itself."""
+    """A plan in the current format; older plans do not say which rows to time exclusively."""
     import polars as pl
 
     if TIMED_ALONE in plan.columns:
@@ -25,10 +25,11 @@ def with_all_columns(plan: pl.DataFrame) -> pl.DataFrame:
 
 
 def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """Add a run's plan to what the folder holds.
+    """Add the plan of a run to the plan of the folder.
 
-    Rows of the same dataset stay where it is read in the same way under the same settings, so that
-    a folder can be filled sequence by sequence or method by method; else the new ones replace them.
+    Rows of the same dataset are kept if it is read in the same way under the same settings, so that
+    a folder can be filled sequence by sequence or method by method. Otherwise the new rows replace
+    them.
     """
     import polars as pl
 

@@ -1,4 +1,4 @@
-"""SQL queries over tables, and what is wrong with one in words."""
+"""SQL queries over tables, with readable errors."""
 
 from __future__ import annotations
 
@@ -13,35 +13,36 @@ from aerocues.errors import StoreError
 if TYPE_CHECKING:
     import polars as pl
 
-# Others change tables, which are copies here: they would do nothing, and say nothing.
+# Other statements change tables, which are copies here: they would have no effect, silently.
 READING = ("SELECT", "WITH")
-# What may stand before the first word: blanks, brackets and comments.
+# Spaces, brackets and comments may precede the first word.
 FIRST_WORD = re.compile(r"(?:\s|\(|--[^\n]*(?:\n|$)|/\*.*?\*/)*(\w*)", re.DOTALL)
 NO_COLUMN = re.compile(r"""(?:unable to find column|no column named) ["'](.+?)["']""")
 LONGEST_REASON = 160
 
 
 def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
-    """Answer a query that reads.
+    """Answer a read-only query.
 
     Parameters
     ----------
     query : str
-        SQL as polars knows it.
+        SQL in the dialect of polars.
     tables : mapping of str to pl.DataFrame
 
     Raises
     ------
     StoreError
-        If it does something else than to read, or cannot be understood.
+        If the query is not a read-only query, or fails.
     """
     import polars as pl
 
     word = FIRST_WORD.match(query)
     if word is None or word[1].upper() not in READING:
         raise StoreError(
-            "a query begins with SELECT or WITH, such as 'SELECT detector, inliers FROM results'; "
-            "nothing else is done"
+            "a query must begin with SELECT or WITH, such as 'SELECT detector, inliers FROM "
+            "results'; "
+            "other statements are not supported"
         )
     try:
         return pl.SQLContext(tables).execute(query, eager=True)
@@ -51,16 +52,17 @@ def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def _reason(message: str, columns: Iterable[str], tables: Iterable[str]) -> str:
-    """The first line of what polars says: the rest is how it reads the query."""
+    """The first line of the message of polars; the rest shows how it parsed the query."""
     first = message.partition("\n")[0]
     if unknown := NO_COLUMN.search(first):
         close = get_close_matches(unknown[1], list(dict.fromkeys(columns)), n=3)
         hint = f"did you mean {' or '.join(close)}? " if close else ""
         return (
-            f"there is no column {unknown[1]}; {hint}'aerocues results RESULTS --columns' lists all"
+            f"the column {unknown[1]} does not exist; {hint}"
+            "'aerocues results RESULTS --columns' lists all"
         )
     cut = first if len(first) <= LONGEST_REASON else f"{first[:LONGEST_REASON]}..."
     return (
-        f"the query failed: {cut}; the tables are called {' and '.join(tables)}, and names such as "
+        f"the query failed: {cut}; the tables are {' and '.join(tables)}, and names such as "
         '"gt_precision@3" need double quotes'
     )

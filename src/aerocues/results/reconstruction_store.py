@@ -1,4 +1,4 @@
-"""The part of a results folder that is about 3D models: their figures and their clouds."""
+"""The part of a results folder with 3D models: their table and their clouds."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ CLOUDS = "clouds"
 
 
 class ReconstructionStore(FolderFiles):
-    """Figures of reconstructions, one row a dataset and combination, and a cloud for each."""
+    """Table of reconstructions, one row per dataset and combination, with a cloud for each."""
 
     def write_reconstructions(self, figures: pl.DataFrame) -> None:
-        """Store the figures of 3D reconstructions; those that are there are replaced.
+        """Store the table of 3D reconstructions; an existing table is replaced.
 
         Parameters
         ----------
         figures : pl.DataFrame
-            Columns of `schema.RECONSTRUCTIONS`, one row a dataset and combination; a column that
-            is missing is unknown in all rows.
+            Columns of `schema.RECONSTRUCTIONS`, one row per dataset and combination. A missing
+            column is unknown in all rows.
         """
         self._write(self.folder / RECONSTRUCTED, parquet_content(reconstruction_table(figures)))
 
     def add_reconstructions(self, figures: pl.DataFrame) -> None:
-        """Add figures of one dataset; those of other settings go, as they are not comparable.
+        """Add rows of one dataset; its rows under other settings are removed (not comparable).
 
-        Clouds without a row go, too.
+        Clouds without a row are removed, too.
 
         Parameters
         ----------
         figures : pl.DataFrame
-            Of one dataset and under one ``settings_key``.
+            Rows of one dataset under one ``settings_key``.
         """
         import polars as pl
 
@@ -59,7 +59,7 @@ class ReconstructionStore(FolderFiles):
                 file.unlink()
 
     def reconstructions(self) -> pl.DataFrame:
-        """The figures of 3D reconstructions, by dataset and combination; often none."""
+        """The table of 3D reconstructions, sorted by dataset and combination; often empty."""
         import polars as pl
 
         schema = pl.Schema(polars_schema(RECONSTRUCTIONS))
@@ -71,13 +71,13 @@ class ReconstructionStore(FolderFiles):
         )
 
     def write_cloud(self, row_key: str, cloud: Cloud) -> None:
-        """Store the cloud of the reconstruction whose row has this key."""
+        """Store the cloud of the reconstruction with this row key."""
         folder = self.folder / CLOUDS
         folder.mkdir(exist_ok=True)
         self._write(folder / f"{row_key}.npz", cloud.content())
 
     def cloud(self, row_key: str) -> Cloud | None:
-        """The cloud of a reconstruction; None where there is none.
+        """The cloud of a reconstruction; None if it has no cloud.
 
         Raises
         ------
@@ -90,7 +90,9 @@ class ReconstructionStore(FolderFiles):
         try:
             return read_cloud(file.read_bytes(), file)
         except OSError as error:
-            raise StoreError(f"cannot read {file}: {error.strerror}; check its access") from error
+            raise StoreError(
+                f"cannot read {file}: {error.strerror}; check the access rights"
+            ) from error
 
     def cloud_files(self) -> list[Path]:
         """The files of all clouds."""

@@ -1,4 +1,4 @@
-"""Figures of 3D reconstructions: one row a dataset and combination."""
+"""Tables of 3D reconstructions: one row per dataset and combination."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 FIGURES = ("reprojection_error", "points_3d", "reconstruction_seconds")
 OTHER_NAMES = {"reprojection_error_px": "reprojection_error"}
-FAILED = "the reconstruction failed where it was made"
+FAILED = "the reconstruction failed when it was made"
 
 
 def reconstruction_table(figures: pl.DataFrame) -> pl.DataFrame:
-    """The columns of `schema.RECONSTRUCTIONS`, null where they are missing, in a fixed order."""
+    """The columns of `schema.RECONSTRUCTIONS` in a fixed order; missing ones are null."""
     import polars as pl
 
     schema = polars_schema(RECONSTRUCTIONS)
@@ -34,19 +34,19 @@ def reconstruction_table(figures: pl.DataFrame) -> pl.DataFrame:
 
 
 def read_reconstructions(file: Path) -> tuple[TableFile, pl.DataFrame]:
-    """Read figures of reconstructions that were made elsewhere, from CSV or Parquet.
+    """Read a table of reconstructions made by other programs, from CSV or Parquet.
 
     Parameters
     ----------
     file : path
         Columns dataset, detector, descriptor, norm, matcher, ``reprojection_error`` in pixels (or
-        ``reprojection_error_px``), ``points_3d``, ``reconstruction_seconds``; and, if need be,
-        status and message. A row without any figure is a reconstruction that failed.
+        ``reprojection_error_px``), ``points_3d``, ``reconstruction_seconds``; optionally status and
+        message. A row without any values is a failed reconstruction.
 
     Raises
     ------
     StoreError
-        If the file cannot be read, its columns do not fit or a combination comes twice.
+        If the file cannot be read, its columns are invalid or a combination occurs twice.
     """
     import polars as pl
 

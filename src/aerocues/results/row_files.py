@@ -1,7 +1,7 @@
-"""The measured rows of a results folder, in as many files as they were finished in.
+"""The measured rows of a results folder, one file per finished part.
 
-A unit's rows are a file of their own, so that nothing finished is lost. Tens of thousands of small
-files take a minute to read, so that those of a long run are put together.
+The rows of a unit are stored in their own file, so that finished work is never lost. Reading tens
+of thousands of small files takes a minute, so those of a long run are merged.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ MANY_FILES = 1000
 
 
 class RowFiles(FolderFiles):
-    """Files with rows in one folder."""
+    """The files with rows in one folder."""
 
     def files(self) -> list[Path]:
-        """All of them, by name."""
+        """All files, sorted by name."""
         return sorted(self.folder.glob("*.parquet"))
 
     def write(self, name: str, rows: pl.DataFrame) -> None:
@@ -36,17 +36,17 @@ class RowFiles(FolderFiles):
         Raises
         ------
         StoreError
-            If the disk is full or the folder cannot be written any more.
+            If the disk is full or the folder is not writable any more.
         """
         self._write(self.folder / f"{name}.parquet", parquet_content(rows))
 
     def read(self, columns: Sequence[str] | None = None) -> pl.DataFrame:
-        """All rows as they were written, also those that were written twice.
+        """All rows as they were written, including duplicates.
 
         Parameters
         ----------
         columns : sequence of str, optional
-            Only these.
+            Only these columns.
 
         Raises
         ------
@@ -59,10 +59,10 @@ class RowFiles(FolderFiles):
         except StoreError:
             if self.files() == files:
                 raise
-            return self.read(columns)  # another process put some together meanwhile
+            return self.read(columns)  # another process merged some files in the meantime
 
     def put_together(self) -> None:
-        """Make few large files of very many small ones; the rows are on the disk all the time.
+        """Merge very many small files into a few large ones; at any time all rows are on the disk.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class RowFiles(FolderFiles):
         schema = pl.Schema(polars_schema())
         if not files:
             return pl.DataFrame(schema=schema).select(columns or list(schema))
-        # Older results lack the columns that have come since.
+        # Older results lack columns that were added later.
         rows = pl.scan_parquet(
             files, schema=schema, missing_columns="insert", extra_columns="ignore"
         )

@@ -1,8 +1,8 @@
-"""Times of pairs that were not timed by themselves, from those of the pairs that were.
+"""Times of pairs without exclusive timing, scaled by those of pairs with it.
 
-A combination's pairs that were measured on a core of their own were measured beside others, too.
-What the former took in all over what the latter did, stage by stage, scales its other pairs: a
-ratio estimate (Cochran, "Sampling Techniques", 1977, chapter 6).
+Pairs that were timed on a core of their own were also measured beside others. For each combination
+and stage, the ratio of the two sums scales the times of its other pairs: a ratio estimate (Cochran,
+"Sampling Techniques", 1977, chapter 6).
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ COLUMNS = ("row_key", "timing", "measured_at", *_GROUP, *_SECONDS)
 
 
 def with_scaled_times(best: pl.DataFrame, measured: pl.DataFrame) -> pl.DataFrame:
-    """Scale the times of rows where the same machine timed others of the combination by themselves.
+    """Scale the times of rows if the same machine timed other rows of the combination exclusively.
 
     Parameters
     ----------
     best : pl.DataFrame
-        One row a measurement, the best that there is of each; columns as in `schema.COLUMNS`.
+        The best row of each measurement; columns as in `schema.COLUMNS`.
     measured : pl.DataFrame
-        All rows without a failure, also the same measurement with other timings; at least the
+        All successful rows, including the same measurement with other timings; at least the
         `COLUMNS`.
 
     Returns
@@ -89,7 +89,7 @@ def with_scaled_times(best: pl.DataFrame, measured: pl.DataFrame) -> pl.DataFram
 
 
 def _factors(measured: pl.LazyFrame) -> pl.LazyFrame:
-    """What a core of its own makes of the CPU time of a stage: a row a machine and combination."""
+    """Ratio of exclusive time to shared CPU time per stage; one row per machine and combination."""
     import polars as pl
 
     kept = measured.select(COLUMNS).sort("measured_at")
@@ -109,7 +109,7 @@ def _factors(measured: pl.LazyFrame) -> pl.LazyFrame:
 
 
 def _ratio(columns: tuple[str, ...], ending: str) -> pl.Expr:
-    """Sum of the times alone over the sum of the CPU times beside others; null where that is 0."""
+    """Sum of the exclusive times / sum of the shared CPU times; null if the latter is 0."""
     import polars as pl
 
     alone = pl.sum_horizontal(pl.col(f"{column}{ending}").sum() for column in columns)
@@ -118,7 +118,7 @@ def _ratio(columns: tuple[str, ...], ending: str) -> pl.Expr:
 
 
 def _total_seconds() -> pl.Expr:
-    """`metrics.total_seconds` of whole columns."""
+    """`metrics.total_seconds` for whole columns."""
     import polars as pl
 
     stages = [

@@ -56,16 +56,22 @@ OUTCOME: tuple[Column, ...] = (
 )
 
 COUNTS: tuple[Column, ...] = (
-    _count("keypoints_1", "keypoints of image 1 with a descriptor; without any, those detected"),
-    _count("keypoints_2", "keypoints of image 2 with a descriptor; without any, those detected"),
+    _count(
+        "keypoints_1",
+        "keypoints of image 1 with a descriptor; if there are none, the detected keypoints",
+    ),
+    _count(
+        "keypoints_2",
+        "keypoints of image 2 with a descriptor; if there are none, the detected keypoints",
+    ),
     _count("matches", "mutual matches"),
     _count("inliers", "matches that agree with the model: the fundamental matrix, see sampling"),
     Column("chance_inliers", "float", "count", "mean inliers over the shuffled matches"),
     _count("chance_inliers_max", "largest number of inliers over the shuffled matches"),
     _text(
         "sampling",
-        "how the model was found: uniform; guided (by distance) where that found none better than "
-        "chance; homography where only that did (homography data; its inliers are then counted)",
+        "how the model was found: uniform; guided (by distance) if uniform found none better than "
+        "chance; homography if only that did (homography data; its inliers are then counted)",
     ),
     _count("homography_inliers", "matches that agree with the homography (homography data)"),
 )
@@ -75,25 +81,27 @@ TIMES: tuple[Column, ...] = (
     *_seconds("detect_seconds_2", "detect in image 2"),
     *_seconds("describe_seconds_1", "describe image 1"),
     *_seconds("describe_seconds_2", "describe image 2"),
-    *_seconds("match_seconds", "match, with the building of indices, in both directions"),
+    *_seconds("match_seconds", "match in both directions, including building indices"),
     *_seconds("verify_seconds", "estimate the fundamental matrix"),
 )
 
 HOW_TIMED: tuple[Column, ...] = (
-    _count("timing_repeats", "calls behind the median of a stage, at least (exclusive timing)"),
+    _count(
+        "timing_repeats", "smallest number of calls behind the median of a stage (exclusive timing)"
+    ),
     Column(
         "timing_spread",
         "float",
         "ratio",
-        "largest (slowest - fastest) / median of the calls of a stage, for those of a millisecond "
+        "largest (slowest - fastest) / median of the calls of a stage, for stages of a millisecond "
         "or more (exclusive timing)",
     ),
     Column(
         "wall_over_cpu",
         "float",
         "ratio",
-        "largest wall / CPU seconds of a stage of a millisecond or more; above 1.1 it had to share "
-        "its core, in every attempt (exclusive timing)",
+        "largest wall / CPU seconds of a stage of a millisecond or more; above 1.1 it shared "
+        "its core in every attempt (exclusive timing)",
     ),
 )
 
@@ -103,7 +111,7 @@ RESOURCES: tuple[Column, ...] = (
         "peak_memory_mb",
         "float",
         "MB",
-        "largest rise of the resident set in one stage call (exclusive timing on Linux)",
+        "largest increase of the resident set in one stage call (exclusive timing on Linux)",
     ),
 )
 
@@ -136,7 +144,7 @@ GROUND_TRUTH: tuple[Column, ...] = (
         "homography_error",
         "float",
         "px",
-        "mean corner error of the estimated homography; infinite where there is none",
+        "mean corner error of the estimated homography; infinite if there is none",
     ),
     *(
         Column(
@@ -151,8 +159,8 @@ GROUND_TRUTH: tuple[Column, ...] = (
         "pose_error",
         "float",
         "degrees",
-        "larger of the angles between estimated and true rotation and direction of the shift; "
-        "infinite where there is no estimate",
+        "the larger of the angle errors of rotation and of the direction of translation; "
+        "infinite if there is no estimate",
     ),
     *(
         Column(
@@ -168,21 +176,22 @@ GROUND_TRUTH: tuple[Column, ...] = (
 PROVENANCE: tuple[Column, ...] = (
     _text("preset", "preset of parameters and protocol"),
     _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
-    _count("max_keypoints", "keypoints of an image that were kept at most; 0: all"),
-    _text("keypoint_choice", "which were kept: strongest, or spread over the image"),
+    _count("max_keypoints", "maximum number of keypoints per image; 0: all"),
+    _text("keypoint_choice", "which keypoints were kept: strongest, or spread over the image"),
     Column("inlier_threshold", "float", "px", "inlier threshold of the verification"),
     _text("opencv_version", "version of OpenCV"),
-    _text("machine", "processor that measured"),
+    _text("machine", "processor of the machine"),
     Column("seed", "integer", "", "seed set before every stage call"),
     _text(
         "timing",
-        "exclusive: a core of its own; scaled: as measured beside others, times what a core of its "
-        "own makes of that for the combination; shared: several workers at once; estimated: "
-        "shared, with brute force timed on a part of the descriptors",
+        "exclusive: on a core of its own; scaled: shared times, multiplied by the exclusive / "
+        "shared "
+        "ratio of the combination; shared: beside other workers; estimated: "
+        "shared, with brute force timed on a sample of the descriptors",
     ),
     Column("measured_at", "float", "s", "when the row was measured, in seconds since 1970 (UTC)"),
     _text("settings_key", "hash of preset, protocol and versions: equal within one table"),
-    _text("row_key", "hash of everything that decides the row"),
+    _text("row_key", "hash of everything that the row depends on"),
 )
 
 DERIVED: tuple[Column, ...] = tuple(
@@ -203,7 +212,7 @@ COLUMNS: tuple[Column, ...] = (
 
 
 def empty_row() -> Row:
-    """A row with every column, all unknown."""
+    """A row with all columns, in which every value is unknown."""
     return {column.name: None for column in COLUMNS}
 
 

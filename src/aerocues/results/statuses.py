@@ -1,4 +1,4 @@
-"""How the evaluation of one combination on one pair can end: one row a status."""
+"""Possible outcomes of one combination on one pair: one row per status."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class Status:
     """One outcome.
 
-    ``retried`` says whether ``--retry-failed`` runs such a row again: where the machine or a
-    method's bug decided, not the images.
+    ``retried`` says whether ``--retry-failed`` runs such rows again: those whose failure depends on
+    the machine or on a bug of a method, not on the images.
     """
 
     name: str
@@ -19,16 +19,16 @@ class Status:
 
 
 STATUSES: tuple[Status, ...] = (
-    Status("ok", "a model was found and, where asked for, it beats chance"),
-    Status("no_keypoints", "the detector found no keypoint in one of the images"),
-    Status("no_descriptors", "the descriptor kept no keypoint in one of the images"),
-    Status("too_few_matches", "fewer mutual matches than a model can be judged by"),
+    Status("ok", "a model was found and, if required, it beats chance"),
+    Status("no_keypoints", "the detector found no keypoints in one of the images"),
+    Status("no_descriptors", "the descriptor kept no keypoints in one of the images"),
+    Status("too_few_matches", "too few mutual matches to estimate and judge a model"),
     Status("no_model", "robust estimation returned no valid fundamental matrix"),
-    Status("chance", "the model is no better than those that shuffled matches give"),
-    Status("error", "a method raised an error; the message has it", retried=True),
-    Status("crashed", "the process died in a method; the message says in which", retried=True),
-    Status("timeout", "a stage used up its time limit", retried=True),
-    Status("out_of_memory", "a stage asked for more memory than the limit", retried=True),
+    Status("chance", "the model is not better than models of shuffled matches"),
+    Status("error", "a method raised an error; see the message", retried=True),
+    Status("crashed", "the process died in a method; the message names the method", retried=True),
+    Status("timeout", "a stage exceeded its time limit", retried=True),
+    Status("out_of_memory", "a stage exceeded the memory limit", retried=True),
 )
 
 RETRIED: tuple[str, ...] = tuple(status.name for status in STATUSES if status.retried)

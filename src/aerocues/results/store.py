@@ -35,7 +35,7 @@ LONGEST_LIST = 12
 
 
 class Store(ReconstructionStore):
-    """Results in a folder. A part is written beside and renamed: there is never half a file."""
+    """Results in a folder. Parts are written under another name and renamed: no partial files."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
@@ -44,12 +44,12 @@ class Store(ReconstructionStore):
 
     @classmethod
     def create(cls, folder: Path) -> Store:
-        """Open a results folder for writing, made where it is missing.
+        """Open a results folder for writing; it is created if it does not exist.
 
         Raises
         ------
         StoreError
-            If the folder cannot be made or written, or is something else.
+            If the folder cannot be created or written, or has other content.
         """
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give -o the name of a folder")
@@ -73,7 +73,7 @@ class Store(ReconstructionStore):
 
     @contextlib.contextmanager
     def writing(self) -> Iterator[None]:
-        """Keep other runs out of the folder, and take away what an interrupted one left half done.
+        """Lock the folder against other runs, and remove partial files of an interrupted run.
 
         Raises
         ------
@@ -88,17 +88,17 @@ class Store(ReconstructionStore):
 
     @classmethod
     def open(cls, folder: Path) -> Store:
-        """Open an existing results folder for reading; StoreError where there is none."""
+        """Open an existing results folder for reading; StoreError if it is not one."""
         if not (folder / RUN).is_file():
             inner = sorted(run.parent.name for run in folder.glob(f"*/{RUN}"))
             if inner:
                 more = f" and {len(inner) - LONGEST_LIST} more" if inner[LONGEST_LIST:] else ""
                 raise StoreError(
-                    f"{folder} is a folder of results folders; name one of them, such as "
+                    f"{folder} is a folder of results folders; give one of them, such as "
                     f"{folder / inner[0]}: {', '.join(inner[:LONGEST_LIST])}{more}"
                 )
             raise StoreError(
-                f"{folder} is no results folder (it has no {RUN}); make one with "
+                f"{folder} is not a results folder (it has no {RUN}); make one with "
                 f"'aerocues run DATASET -o {folder}'"
             )
         return cls(folder)
@@ -114,7 +114,7 @@ class Store(ReconstructionStore):
         Raises
         ------
         StoreError
-            If the disk is full or the folder cannot be written any more.
+            If the disk is full or the folder is not writable any more.
         """
         import polars as pl
 
@@ -122,15 +122,15 @@ class Store(ReconstructionStore):
         self._row_files.write(name, table)
 
     def write_finished(self, detector: str, rows: Sequence[Row]) -> None:
-        """Store the rows of one detector that an engine finished; see `write_rows`.
+        """Store the finished rows of one detector; see `write_rows`.
 
-        The same measurements with other timings are another part.
+        The same measurements with other timings are stored as another part.
         """
         content = [[row["row_key"], row["timing"]] for row in rows]
         self.write_rows(f"{detector}-{content_hash(content)}", rows)
 
     def write_run(self, facts: Mapping[str, Any]) -> None:
-        """Store the configuration, the versions and the machine of the latest run."""
+        """Store configuration, versions and machine of the latest run."""
         self._write(self.folder / RUN, json_content(facts))
 
     def write_plan(self, rows: pl.DataFrame) -> None:
@@ -140,7 +140,7 @@ class Store(ReconstructionStore):
         self._write(self.folder / PLAN, parquet_content(merge_plans(old, new)))
 
     def plan(self) -> pl.DataFrame:
-        """All planned rows, under whatever settings."""
+        """All planned rows, under all settings."""
         import polars as pl
 
         if not (self.folder / PLAN).is_file():
@@ -151,24 +151,24 @@ class Store(ReconstructionStore):
         return with_all_columns(self._collect(pl.scan_parquet(self.folder / PLAN)))
 
     def planned(self) -> pl.DataFrame:
-        """The rows that the folder is to hold, under the settings of the latest run."""
+        """The planned rows under the settings of the latest run."""
         import polars as pl
 
         return self.plan().filter(pl.col("settings_key") == self.run().get("settings_key"))
 
     def planned_keys(self) -> frozenset[str]:
-        """Keys of the rows that the folder is to hold; none where nothing tells."""
+        """Keys of the planned rows; empty if there is no plan."""
         try:
             return frozenset(self.planned()["row_key"].to_list())
         except StoreError:
-            return frozenset()  # a new folder, or a record that the next run restores
+            return frozenset()  # a new folder, or a file that the next run restores
 
     def measured(self, keys: frozenset[str]) -> frozenset[str]:
-        """Those of some rows that were measured."""
+        """The measured rows among these."""
         return keys & frozenset(self._row_files.read(("row_key",))["row_key"]) if keys else keys
 
     def run(self) -> dict[str, Any]:
-        """What `write_run` stored last."""
+        """The latest record of `write_run`."""
         try:
             content = json.loads((self.folder / RUN).read_text(encoding="utf-8"))
         except (OSError, json.JSONDecodeError) as error:
@@ -187,8 +187,8 @@ class Store(ReconstructionStore):
     def present(self, timing: Timing, *, retry_failed: bool) -> frozenset[str]:
         """Keys of the rows that need not be measured again.
 
-        Rows with worse times do not serve where better ones are asked for, unless they failed; the
-        converse does.
+        A row with a worse timing does not replace one with a better timing, unless it failed; the
+        reverse is possible.
         """
         import polars as pl
 
@@ -201,10 +201,10 @@ class Store(ReconstructionStore):
         return frozenset(rows["row_key"].to_list())
 
     def table(self) -> pl.DataFrame:
-        """The measured ones among the planned rows, each once, in order; see `best_rows`."""
+        """The measured rows of the plan, each once and in order; see `best_rows`."""
         rows = self.rows()
         return best_rows(self.planned(), rows) if len(rows) else rows
 
     def rows(self) -> pl.DataFrame:
-        """Every stored row as it was written, planned or not, also the same one twice."""
+        """All stored rows as they were written, planned or not, including duplicates."""
         return self._row_files.read()

@@ -1,4 +1,4 @@
-"""Tables that others made, from CSV or Parquet into our columns; what does not fit is named."""
+"""Reads tables of other programs from CSV or Parquet into our columns, with precise errors."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     import polars as pl
 
 PARQUET_MARK = b"PAR1"
-# How programs write that there is no number.
+# Texts that programs write for a missing number.
 NO_NUMBER = ("", "NA", "N/A", "NaN", "nan", "null", "None", "-")
 MAY_BE_NEGATIVE = ("seed",)
 
 
 @dataclass(frozen=True)
 class TableFile:
-    """A file with a table: its name, the hash of its content, and its columns as they are."""
+    """A file with a table: its name, the hash of its content, and its original columns."""
 
     name: str
     sha256: str
@@ -43,12 +43,12 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
     ----------
     file : path
     other_names : mapping of str to str
-        Names that a column may also have, and what it is called here.
+        Other names that a column may have, and our name for it.
 
     Raises
     ------
     StoreError
-        If it cannot be read, is neither CSV nor Parquet, is damaged or has no row.
+        If it cannot be read, is neither CSV nor Parquet, is damaged or has no rows.
     """
     import polars as pl
 
@@ -60,7 +60,7 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
         ) from error
     is_parquet = content.startswith(PARQUET_MARK)
     if not is_parquet and file.suffix.lower() != ".csv":
-        damaged = " (it is no Parquet file inside)" if file.suffix.lower() == ".parquet" else ""
+        damaged = " (its content is not Parquet)" if file.suffix.lower() == ".parquet" else ""
         raise StoreError(f"{file} is neither CSV nor Parquet{damaged}; give one of these")
     try:
         if is_parquet:
@@ -72,33 +72,33 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
         raise StoreError(f"{file} cannot be read as {form}: {_reason(error)}") from error
     frame = frame.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines
     if frame.is_empty():
-        raise StoreError(f"{file} has no row; give a table with one at least")
+        raise StoreError(f"{file} has no rows; give a table with at least one row")
     table = TableFile(file.name, hashlib.sha256(content).hexdigest(), frame)
     names = [other_names.get(name.strip(), name.strip()) for name in frame.columns]
     for given, name in zip(frame.columns, names, strict=True):
         if names.count(name) > 1:
-            raise table.wrong(f"has the column {name} twice (as {given}); keep one")
+            raise table.wrong(f"has the column {name} twice (as {given}); keep one of them")
     return replace(table, frame=frame.rename(dict(zip(frame.columns, names, strict=True))))
 
 
 def _reason(error: Exception) -> str:
-    """What is wrong and what to do; the rest of such messages is about polars."""
+    """The error and what to do, without the parts of the message that concern polars."""
     text = " ".join(str(error).split())
     if "utf-8" in text.lower():
         return "it is not UTF-8; save it as UTF-8"
     what = text.split("Consider", maxsplit=1)[0].strip(" .:;")[:120]
-    return f"{what}; check that all its lines have the same columns, and write it again"
+    return f"{what}; check that all its lines have the same columns, and save it again"
 
 
 def in_columns(
     table: TableFile, columns: Sequence[Column], required: Collection[str]
 ) -> pl.DataFrame:
-    """The table with exactly these columns, of their types; NaN and blanks become null.
+    """The table with exactly these columns and types; NaN and blanks become null.
 
     Raises
     ------
     StoreError
-        If a required column is missing, one is not known, or a value does not fit its column.
+        If a required column is missing, a column is unknown, or a value is invalid.
     """
     import polars as pl
 
@@ -123,11 +123,11 @@ def _check_names(table: TableFile, columns: Sequence[Column], required: Collecti
     missing = [name for name in required if name not in found]
     faults = []
     if unknown:
-        faults.append(f"has columns that are not known: {', '.join(unknown)}")
+        faults.append(f"has unknown columns: {', '.join(unknown)}")
     if missing:
         faults.append(f"lacks the columns {', '.join(missing)}")
     if len(found) == 1 and {";", "\t"} & set(found[0]):
-        raise table.wrong("has one column only; write it with commas between the columns")
+        raise table.wrong("has only one column; separate the columns with commas")
     if faults:
         raise table.wrong(f"{' and '.join(faults)}; rename, remove or add them")
 
@@ -137,7 +137,9 @@ def _converted(table: TableFile, column: Column) -> pl.Series:
 
     values = table.frame[column.name]
     if values.dtype.is_nested() or values.dtype in (pl.Binary, pl.Object):
-        raise table.wrong(f"holds {values.dtype} in the column {column.name}; give plain values")
+        raise table.wrong(
+            f"has {values.dtype} values in the column {column.name}; give plain values"
+        )
     if column.type == "string":
         text = values.cast(pl.String).str.strip_chars()
         return text.set(text == "", None)
@@ -147,29 +149,29 @@ def _converted(table: TableFile, column: Column) -> pl.Series:
     if column.type == "float":
         return numbers
     _refuse(
-        table, values, ~numbers.is_finite() | (numbers != numbers.round()), "is no whole number"
+        table, values, ~numbers.is_finite() | (numbers != numbers.round()), "is not a whole number"
     )
     return numbers.cast(pl.Int64)
 
 
 def _numbers(table: TableFile, values: pl.Series) -> pl.Series:
-    """The values as float64, null where there is none."""
+    """The values as float64; null if missing."""
     import polars as pl
 
     if values.dtype in (pl.String, pl.Categorical, pl.Enum):
         text = values.cast(pl.String).str.strip_chars()
         given = text.set(text.is_in(NO_NUMBER), None)
         numbers = given.cast(pl.Float64, strict=False)
-        _refuse(table, values, given.is_not_null() & numbers.is_null(), "is no number")
+        _refuse(table, values, given.is_not_null() & numbers.is_null(), "is not a number")
     elif values.dtype.is_numeric() or values.dtype == pl.Null:
         numbers = values.cast(pl.Float64)
     else:
-        raise table.wrong(f"holds {values.dtype} in the column {values.name}; give numbers")
+        raise table.wrong(f"has {values.dtype} values in the column {values.name}; give numbers")
     return numbers.fill_nan(None)
 
 
 def _refuse(table: TableFile, values: pl.Series, wrong: pl.Series, what: str) -> None:
-    """Name the first value that is wrong."""
+    """Raise an error that names the first invalid value."""
     row = first_row(wrong)
     if row is not None:
         value = values.item(row - 1)
@@ -177,25 +179,25 @@ def _refuse(table: TableFile, values: pl.Series, wrong: pl.Series, what: str) ->
 
 
 def first_row(wrong: pl.Series) -> int | None:
-    """The number of the first row that is wrong, from 1, the heading not counted."""
+    """The number of the first invalid row, counted from 1 without the heading."""
     positions = wrong.arg_true()
     return int(positions.item(0)) + 1 if len(positions) else None
 
 
 def named_methods(table: TableFile, rows: pl.DataFrame) -> pl.DataFrame:
-    """The rows with the names of methods in capitals; all that name a row must be there.
+    """The rows with method names in capitals; all columns that identify a row must be present.
 
     Raises
     ------
     StoreError
-        If a row has no dataset or method, or a method's name could not be part of a combination.
+        If a row has no dataset or method, or the name of a method is not valid in a combination.
     """
     import polars as pl
 
     for name in ("dataset", *METHODS):
         row = first_row(rows[name].is_null())
         if row is not None:
-            raise table.wrong(f"has no {name} in row {row}; fill it in")
+            raise table.wrong(f"has no {name} in row {row}; add it")
     rows = rows.with_columns(pl.col(METHODS).str.to_uppercase())
     for name in METHODS:
         for method in rows[name].unique(maintain_order=True):
@@ -207,7 +209,7 @@ def named_methods(table: TableFile, rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def refuse_twice(table: TableFile, rows: pl.DataFrame, names: Sequence[str]) -> None:
-    """Name the first two rows that are about the same thing; StoreError if there are any."""
+    """Raise StoreError for the first two rows that describe the same measurement."""
     twice = rows.select(names).is_duplicated()
     if not twice.any():
         return
@@ -217,4 +219,7 @@ def refuse_twice(table: TableFile, rows: pl.DataFrame, names: Sequence[str]) -> 
     told = ", ".join(
         f"{name} {value}" for name, value in zip(names, first, strict=True) if value is not None
     )
-    raise table.wrong(f"has rows {numbers[0]} and {numbers[1]} about the same ({told}); keep one")
+    raise table.wrong(
+        f"rows {numbers[0]} and {numbers[1]} describe the same measurement ({told}); keep one of "
+        "them"
+    )

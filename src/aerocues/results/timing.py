@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 Timing = Literal["exclusive", "shared", "estimated"]
-# From what says least of a machine to what says most.
+# From the least to the most informative.
 TIMINGS: tuple[Timing, ...] = ("estimated", "shared", "exclusive")
-# A call whose wall time is so much longer than its CPU time had to share its core.
+# A call whose wall time exceeds its CPU time by this factor shared its core.
 DISTURBED = 1.1

@@ -31,7 +31,7 @@ POWER = re.compile(r"(-?[\d.]+)e([+-]\d+)")
 
 
 def as_markdown(table: pl.DataFrame) -> str:
-    """A table in GitHub's Markdown; what is missing is blank."""
+    """A table in GitHub's Markdown; missing values are blank."""
     cells = _cells(table, _markdown_text, plain_number)
     rules = ["---:" if column.dtype.is_numeric() else "---" for column in table.iter_columns()]
     lines = [[_markdown_text(name) for name in table.columns], rules, *cells]
@@ -39,7 +39,7 @@ def as_markdown(table: pl.DataFrame) -> str:
 
 
 def as_latex(table: pl.DataFrame) -> str:
-    """A ``tabular`` with the rules of booktabs; what is missing is a dash."""
+    """A ``tabular`` with the rules of booktabs; missing values are a dash."""
     columns = "".join("r" if c.dtype.is_numeric() else "l" for c in table.iter_columns())
     head = " & ".join(map(_latex_text, table.columns))
     body = [" & ".join(line) for line in _cells(table, _latex_text, _latex_number)]
@@ -59,7 +59,7 @@ def as_latex(table: pl.DataFrame) -> str:
 
 
 def plain_number(value: float | None) -> str:
-    """A number to four digits, integers as they are, nothing for what is no number.
+    """A number with four digits; integers are unchanged, and NaN becomes empty.
 
     >>> [plain_number(value) for value in (0.88214, 12.0, 31415.9, 7, 0.00001234)]
     ['0.8821', '12.00', '31416', '7', '1.234e-05']

@@ -1,4 +1,4 @@
-"""What measured: versions of the software and the machine."""
+"""Versions of the software, and the machine."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ PACKAGES = (
     "polars",
     "pyarrow",
 )
-# What a board says it is. All Jetsons of a generation have the same text in /proc/cpuinfo.
+# The name of a board. All Jetsons of a generation have the same text in /proc/cpuinfo.
 BOARD = Path("/proc/device-tree/model")
 
 CORES = Path("/sys/devices/system/cpu")
 
 
 def software_versions() -> dict[str, str]:
-    """Versions of Python, of OpenCV as it says itself, and of the packages that are installed.
+    """Versions of Python, of OpenCV (from cv2 itself), and of the installed packages.
 
-    OpenCV of a board's system is no package, and the light install has no pyarrow.
+    OpenCV from the system of a board is not a Python package, and the light install has no pyarrow.
     """
     import cv2
 
@@ -40,7 +40,7 @@ def software_versions() -> dict[str, str]:
 
 
 def _processor() -> str:
-    with contextlib.suppress(OSError):  # no board, or a telephone that keeps it to itself
+    with contextlib.suppress(OSError):  # not a board, or a phone that does not reveal it
         board = BOARD.read_text(errors="replace").strip("\0 \n")
         if board:
             return board
@@ -49,17 +49,17 @@ def _processor() -> str:
             if line.startswith(("model name", "Model")):
                 return line.split(":", 1)[1].strip()
     except OSError:
-        pass  # no /proc on this system: platform knows something
+        pass  # this system has no /proc: platform knows something
     return platform.processor() or platform.machine()
 
 
 def machine_name() -> str:
-    """Board or processor and number of cores, without anything that names the owner."""
+    """Board or processor and number of cores, without anything that identifies the owner."""
     return f"{_processor()}, {os.cpu_count()} cores"
 
 
 def _governors() -> str:
-    """How the cores choose their clocks, such as ``performance``; empty where it is not told."""
+    """The frequency governor of the cores, such as ``performance``; empty if unknown."""
     found = set()
     for file in CORES.glob("cpu[0-9]*/cpufreq/scaling_governor"):
         with contextlib.suppress(OSError):
@@ -68,7 +68,7 @@ def _governors() -> str:
 
 
 def machine_facts() -> dict[str, str | int]:
-    """The machine as it is recorded in ``run.json``, with how it chooses its clock if it tells."""
+    """The machine as recorded in ``run.json``, with its frequency governor if known."""
     import psutil
 
     governors = _governors()

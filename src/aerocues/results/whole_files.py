@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Files that are written atomically."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 def write_whole(contents: Mapping[Path, bytes | memoryview]) -> None:
-    """Write files beside their places and rename them when all are on the disk.
+    """Write files under other names and rename them when all of them are on the disk.
 
-    Until then nothing is replaced, whatever ends the writing; nothing stays beside.
+    Until then nothing is replaced, even if writing is interrupted, and no temporary files remain.
 
     Raises
     ------
     OSError
-        If the disk is full or a folder cannot be written.
+        If the disk is full or a folder is not writable.
     """
     with ExitStack() as clean_up:
         ready: list[tuple[Path, Path]] = []
@@ -39,12 +39,12 @@ def write_whole(contents: Mapping[Path, bytes | memoryview]) -> None:
 
 
 def _remove(path: Path) -> None:
-    with suppress(OSError):  # a folder out of reach is told already
+    with suppress(OSError):  # an inaccessible folder was already reported
         path.unlink(missing_ok=True)
 
 
 def parquet_content(table: pl.DataFrame) -> bytes:
-    """A table as the content of a file: polars has errors of its own for a disk that is full."""
+    """A table as the content of a file, because polars has its own errors for a full disk."""
     content = io.BytesIO()
     table.write_parquet(content, compression="zstd")
     return content.getvalue()
