@@ -1,4 +1,4 @@
-"""What all units of a measurement share, and how it is recorded."""
+"""The context that all units of a measurement share, and its record in ``run.json``."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def make_context(
     timing: Timing = "shared",
     limit: KeypointLimit = ALL_KEYPOINTS,
 ) -> Context:
-    """What all units of a measurement share; the parameters are those of `run.run`.
+    """The context that all units of a measurement share; parameters as in `run.run`.
 
     Raises
     ------
     MethodUnavailableError
-        If times are to be estimated and exact matching, which that needs, cannot be had.
+        If times are to be estimated, but exact matching is unavailable.
     """
     problem = why_not_exact() if timing == "estimated" else None
     if problem:

@@ -1,4 +1,4 @@
-"""Where points of one image truly lie in the other; by a homography where one relates them."""
+"""True positions of points of one image in the other image, from a homography."""
 
 from __future__ import annotations
 
@@ -13,41 +13,41 @@ from aerocues.datasets.true_geometry import Points, nearest_pixels
 
 
 class Correspondence(Protocol):
-    """What is known to be true about the points of two images."""
+    """True correspondence between the points of two images."""
 
     def errors(self, points_1: Points, points_2: Points) -> NDArray[np.float64]:
-        """Distance (N,) in pixels of image 2 between points and where the truth puts them.
+        """Distance (N,) in pixels of image 2 between points and their true positions.
 
-        Infinite where the truth puts a point of image 1 nowhere.
+        Infinite if a point of image 1 has no true position in image 2.
         """
 
     def shared(
         self, points_1: Points, points_2: Points
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The points of each image that the other one shows, both in pixels of image 2.
+        """The points of each image that are visible in the other, both in pixels of image 2.
 
         Parameters
         ----------
         points_1, points_2 : (N, 2), (M, 2)
-            Of image 1 and of image 2; they do not belong together.
+            Points of image 1 and points of image 2, which are not matched.
 
         Returns
         -------
         (K, 2), (L, 2) float64
-            Points of image 1 where they lie in image 2, and points of image 2 as they are.
+            Points of image 1 mapped to image 2, and points of image 2 unchanged.
         """
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneCorrespondence:
-    """Two images that a homography relates.
+    """Two images that are related by a homography.
 
     Parameters
     ----------
     homography : (3, 3) float64
         From pixels of image 1 to pixels of image 2, pixel centres at integers.
     pixels_1, pixels_2 : Pixels
-        Tell which pixels are valid.
+        Masks of valid pixels.
     """
 
     homography: NDArray[np.float64]
@@ -69,7 +69,7 @@ class PlaneCorrespondence:
 
 
 def transfer(points: Points, homography: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Map (N, 2) points; those that pass through infinity become NaN."""
+    """Map (N, 2) points; points that are mapped to infinity become NaN."""
     homogeneous = np.column_stack([points, np.ones(len(points))]).astype(np.float64) @ homography.T
     depth = homogeneous[:, 2:]
     ahead = depth > 1e-12
@@ -80,7 +80,7 @@ def transfer(points: Points, homography: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def covisible(points: Points, homography: NDArray[np.float64], target: Pixels) -> NDArray[np.bool_]:
-    """Which of (N, 2) points fall on valid pixels of the other image."""
+    """Mask (N,) of the points that fall on valid pixels of the other image."""
     rounded, inside = nearest_pixels(transfer(points, homography), target.bgr.shape[:2])
     if target.valid is not None:
         inside[inside] = target.valid[rounded[inside, 1], rounded[inside, 0]]

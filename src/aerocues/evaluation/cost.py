@@ -1,4 +1,4 @@
-"""A rough estimate of what a unit costs: to begin with the costliest and to tell the time left."""
+"""Rough cost of a unit, to start with the most expensive ones and to estimate the time left."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from aerocues.methods.registry import Methods
 TYPICAL_MEGAPIXELS = 0.6
 FLANN_SECONDS_PER_KEYPOINT = 1e-4
 SHORTEST_UNIT = 1.0
-"""CPU seconds an image below which work is not worth dividing."""
+"""CPU seconds per image below which work is not divided."""
 
 
 def match_seconds(methods: Methods, combination: Combination, keypoints: float) -> float:
-    """CPU seconds to match images with so many keypoints.
+    """CPU seconds to match images with these numbers of keypoints.
 
-    Measured on OpenCV's matchers: nanoseconds a pair of descriptors grow with their length.
+    Measured with OpenCV's matchers: the time per pair of descriptors grows with their length.
     """
     if combination.matcher != "BF":
         return FLANN_SECONDS_PER_KEYPOINT * keypoints
@@ -25,7 +25,7 @@ def match_seconds(methods: Methods, combination: Combination, keypoints: float) 
     return keypoints * keypoints * (2.0 + per_column * row.columns) * 1e-9
 
 
-# A descriptor that takes so many times as long as detecting is worth detecting for once more.
+# Detection may be repeated for a descriptor that takes this many times as long as detection.
 WORTH_DETECTING_AGAIN = 20.0
 
 
@@ -36,7 +36,7 @@ def describe_seconds(methods: Methods, detector: str, descriptor: str) -> float:
 
 
 def costly_descriptors(methods: Methods, detector: str, descriptors: Iterable[str]) -> list[str]:
-    """Those that are worth units of their own: VGG and BOOST on many keypoints."""
+    """Descriptors that get their own units: VGG and BOOST on many keypoints."""
     detecting = methods.detectors[detector].seconds_per_megapixel * TYPICAL_MEGAPIXELS
     least = max(WORTH_DETECTING_AGAIN * detecting, SHORTEST_UNIT)
     return [name for name in descriptors if describe_seconds(methods, detector, name) >= least]

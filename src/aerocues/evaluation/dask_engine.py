@@ -1,4 +1,4 @@
-"""Units on the workers of a Dask cluster; the results folder stays with the program that asks."""
+"""Runs units on the workers of a Dask cluster; only the client writes the results folder."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 POLL_SECONDS = 0.1
 SECONDS_BETWEEN_COUNTS = 2.0
-# For results on their way: a worker that is lost with them makes Dask measure the unit again.
+# For results in transit: if a worker is lost with them, Dask measures the unit again.
 RESULT_SECONDS = 10.0
-# Enough that no worker waits for the next unit, few enough that the cluster's memory stays free.
+# Enough that no worker waits for its next unit, but few enough to spare the cluster's memory.
 UNITS_PER_THREAD = 2
 FEWEST_UNITS = 8
 RETRIES = 2
 LONGEST_SECONDS = 30.0
-AGAIN = "run the same command again: what is finished is kept"
+AGAIN = "run the same command again: finished work is kept"
 
 
 @dataclass(frozen=True)
@@ -40,19 +40,19 @@ class DaskEngine:
     Parameters
     ----------
     client : distributed.Client
-        Of `dask_scheduler.connected`, or of any cluster that Dask knows, such as
+        From `dask_scheduler.connected`, or from any cluster that Dask supports, such as
         ``dask_jobqueue.SLURMCluster``.
     timeout : float
-        CPU seconds that one stage call may use, and wall seconds for which it may sit idle.
+        Limit of the CPU seconds of one stage call, and of the wall seconds that it may be idle.
     memory_limit_mb : int or None
-        Memory of the process that measures a unit; by default 80 % of what a thread of the Dask
-        worker has.
+        Memory of the process that measures a unit; by default 80 % of the memory per thread of the
+        Dask worker.
     resource : str or None
         Only workers that were started with this resource (``dask worker --resources NAME=1``)
-        get units: one kind of machine out of several.
+        get units, to choose one kind of machine.
     longest_seconds : float
-        A worker sends the rows of a unit after so long, or when the pair that it is at is
-        finished; the rest of the unit goes to whichever worker is free.
+        After this time a worker finishes the current pair and sends the rows; the rest of the unit
+        goes to any free worker.
     """
 
     client: Client
@@ -63,7 +63,7 @@ class DaskEngine:
 
     @property
     def threads(self) -> int:
-        """Units that the workers which are there now, and may get some, measure at a time."""
+        """Number of units that the eligible workers can measure at a time."""
         if self.resource is None:
             return sum(self.client.nthreads().values())
         workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
@@ -79,10 +79,10 @@ class DaskEngine:
 
     @property
     def dashboard(self) -> str | None:
-        """Where the scheduler shows what the cluster does; None where it has no dashboard."""
+        """Address of the scheduler's dashboard; None if it has no dashboard."""
         try:
             link: str | None = self.client.dashboard_link
-        except KeyError:  # what distributed looks for in the scheduler's list of services
+        except KeyError:  # the key of the dashboard in the scheduler's list of services
             return None
         return link
 
@@ -94,7 +94,7 @@ class DaskEngine:
         Raises
         ------
         EngineError
-            If the scheduler is lost, or a worker has other versions or not the same images.
+            If the scheduler is lost, or a worker has other versions or other images.
         """
         from aerocues.evaluation.dask_worker import UnitMeasurer
 
@@ -109,7 +109,7 @@ class DaskEngine:
             yield from dispatch.run(watch)
         finally:
             with contextlib.suppress(OSError, RuntimeError, ValueError):
-                # A scheduler that is gone has nothing left to be told.
+                # A lost scheduler needs no cleaning up.
                 dispatch.cancel()
                 self.client.unsubscribe_topic(name)
                 self.client.unregister_worker_plugin(name)
@@ -119,29 +119,31 @@ class DaskEngine:
             self.client.register_plugin(measurer, name=measurer.name)
         except ImportError as error:
             raise EngineError(
-                f"the cluster lacks something that the run needs ({error}); install aerocues[dask] "
-                "and your plug-ins, at the versions that are here, on each of its machines"
+                f"the cluster lacks a package that the run needs ({error}); install aerocues[dask] "
+                "and your plug-ins in the versions of this machine on all its machines"
             ) from error
         except OSError as error:
-            raise EngineError(f"a worker was lost as the run began ({error}); {AGAIN}") from error
+            raise EngineError(
+                f"a worker was lost at the start of the run ({error}); {AGAIN}"
+            ) from error
 
 
 @dataclass(frozen=True)
 class _Heard:
-    """The latest report about a unit, and when it came."""
+    """The latest report about a unit, and its time."""
 
     report: Report
     time: float
 
 
 class _Dispatch:
-    """Gives units to the cluster, a bounded number at a time, and takes back what became of them.
+    """Submits units to the cluster, a limited number at a time, and collects the outcomes.
 
     Parameters
     ----------
     engine : DaskEngine
     name : str
-        Of the run.
+        Name of the run.
     context : Context
     units : sequence of Unit
     """
@@ -164,10 +166,10 @@ class _Dispatch:
         self._losses = DaskLosses(context)
 
     def hear(self, event: tuple[float, Report]) -> None:
-        """Take the report of a worker."""
+        """Handle the report of a worker."""
         report = event[1]
         if report["key"] not in self._given:
-            return  # it was on its way when the unit's rows came
+            return  # it was in transit when the rows of the unit arrived
         self._numbers.setdefault(report["worker"], len(self._numbers))
         self._losses.hear(report)
         self._heard[report["key"]] = _Heard(report, time.monotonic())
@@ -186,20 +188,20 @@ class _Dispatch:
                 time.sleep(POLL_SECONDS)
 
     def cancel(self) -> None:
-        """Take back what is not finished."""
+        """Cancel what is not finished."""
         self._client.cancel([future for future, _ in self._given.values()])
         self._given.clear()
 
     def _require_scheduler(self) -> None:
         if self._client.status != "running":
-            raise EngineError(f"the Dask scheduler is gone; start it and {AGAIN}")
+            raise EngineError(f"the Dask scheduler was lost; start it and {AGAIN}")
 
     def _count_threads(self) -> None:
         now = time.monotonic()
         if now - self._counted <= SECONDS_BETWEEN_COUNTS:
             return
         self._counted = now
-        with contextlib.suppress(OSError):  # a scheduler that is gone is told elsewhere
+        with contextlib.suppress(OSError):  # a lost scheduler is reported elsewhere
             threads = self._engine.threads
             self._room = max(UNITS_PER_THREAD * threads, FEWEST_UNITS)
             since = now if self._without_worker_since is None else self._without_worker_since
@@ -240,17 +242,17 @@ class _Dispatch:
         return sorted(activities, key=lambda activity: activity.worker)
 
     def _take(self, key: str) -> Iterator[Finished]:
-        """What became of a unit that Dask is done with; what has to be tried again is queued."""
+        """The outcome of a unit that Dask has finished; work to retry is queued."""
         from distributed import CancelledError, KilledWorker
 
         future, unit = self._given[key]
         try:
             measured = future.result(timeout=RESULT_SECONDS)
         except TimeoutError:
-            return  # it is measured once more
+            return  # it is measured again
         except CancelledError:
             self._require_scheduler()
-            self._queue.appendleft(unit)  # somebody restarted the workers
+            self._queue.appendleft(unit)  # the workers were restarted
         except KilledWorker as error:
             heard = self._heard.get(key)
             report = heard.report if heard else None

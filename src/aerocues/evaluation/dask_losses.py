@@ -1,4 +1,4 @@
-"""What becomes of a unit in which Dask workers died, one after the other."""
+"""Handles units in which Dask workers died."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
     from aerocues.evaluation.dask_worker import Report
 
-# Dask blames all units that a lost worker had, those that only waited there included: so often a
-# unit is given again of which no lost worker said that it was at it.
+# Dask blames all units of a lost worker, including waiting ones. A unit is retried this often if no
+# lost worker reported that it was running it.
 UNTOLD = 2
 
 
 def call_of(report: Report) -> StageCall | None:
-    """The call that a worker was in."""
+    """The stage call that a worker was running."""
     return StageCall(**report["call"]) if report["call"] else None  # type: ignore[arg-type]
 
 
 class DaskLosses:
-    """Divides units that cost workers, until what is to blame is alone and is given up.
+    """Divides units that killed workers, until the faulty call is isolated and given up.
 
     Parameters
     ----------
@@ -42,13 +42,13 @@ class DaskLosses:
         self._untold: Counter[Unit] = Counter()
 
     def hear(self, report: Report) -> None:
-        """Take the report of a worker."""
+        """Handle the report of a worker."""
         self._machines[_host(report["worker"])] = report["machine"]
 
     def settle(
         self, unit: Unit, report: Report | None, error: KilledWorker
     ) -> tuple[Finished | None, list[Unit]]:
-        """What is given up of a unit, and what is to be tried again; `report` is the latest."""
+        """What to give up of a unit, and what to retry; `report` is the latest report."""
         last, deaths = error.last_worker.address, error.allowed_failures + 1
         call, told = None, ""
         if report is not None and report["worker"] == last:
@@ -58,7 +58,7 @@ class DaskLosses:
             if self._untold[unit] <= UNTOLD:
                 return None, [unit]
             deaths *= self._untold.pop(unit)
-            told = " before they told of it"
+            told = " before they reported it"
         message = (
             f"{deaths} Dask worker{'s' if deaths > 1 else ''} died in {call or 'this pair'}{told}, "
             f"the last at {last}"

@@ -1,4 +1,4 @@
-"""The way to a Dask scheduler by its address."""
+"""Connects to a Dask scheduler."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def connected(scheduler: str) -> Iterator[Client]:
     Raises
     ------
     EngineError
-        If there is none, or ``distributed`` is not installed.
+        If no scheduler answers, or ``distributed`` is not installed.
     """
     try:
         from distributed import Client
@@ -46,12 +46,12 @@ def connected(scheduler: str) -> Iterator[Client]:
 
 
 def _knock(scheduler: str) -> None:
-    """Try whether anything listens at an address; a client takes long to give a wrong one up.
+    """Check quickly whether anything listens at an address; a client would wait for long.
 
     Raises
     ------
     OSError, ValueError
-        If nothing does, or it is no address.
+        If nothing does, or the address is invalid.
     """
     parts = urlsplit(scheduler if "://" in scheduler else f"tcp://{scheduler}")
     if parts.scheme not in ("tcp", "tls") or not parts.hostname or not parts.port:
@@ -61,7 +61,7 @@ def _knock(scheduler: str) -> None:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep the client from logging what becomes an error of ours."""
+    """Stop the client from logging errors that we report ourselves."""
     logger = logging.getLogger("distributed.client")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

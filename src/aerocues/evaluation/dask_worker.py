@@ -1,7 +1,7 @@
-"""What a Dask worker does for a run: it measures units in worker processes of its own.
+"""The task of a Dask worker in a run: it measures units in its own worker processes.
 
-A method that crashes, hangs or takes too much memory so costs the same as on one machine, and
-never the Dask worker.
+A method that crashes, hangs or uses too much memory then has the same effect as on a single
+machine, and does not kill the Dask worker.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from aerocues.evaluation.worker_pool import WorkerPool
 from aerocues.results.versions import machine_name, software_versions
 
 SAME_VERSIONS = ("aerocues", "opencv")
-# A process is kept for the next unit, and what it holds is given back when none comes.
+# A process is kept for the next unit, and ended if none comes, to free its memory.
 IDLE_SECONDS = 60.0
 SECONDS_BETWEEN_REPORTS = 1.0
 SECONDS_BETWEEN_TRIES = 0.1
-# Of the memory of a Dask worker; the rest is for the worker itself.
+# Share of the memory of a Dask worker; the rest is for the worker itself.
 MEMORY_SHARE = 0.8
 
 
 class Report(TypedDict):
-    """What a worker says about a unit now and then: the call that it is in, as a dictionary."""
+    """A periodic report of a worker about a unit: its current call, as a dictionary."""
 
     key: str
     worker: str
@@ -46,26 +46,26 @@ class Report(TypedDict):
 
 @dataclass(frozen=True)
 class Measured:
-    """The pairs of a unit that are finished, and what is left of it."""
+    """The finished pairs of a unit, and the remaining part."""
 
     finished: list[Finished]
     left: Unit | None
 
 
 class UnitMeasurer(WorkerPlugin):
-    """Is with each worker of a cluster, also with those that come late, as long as a run lasts.
+    """A plug-in on every worker of a cluster, including late ones, for the duration of a run.
 
     Parameters
     ----------
     name : str
-        Of the run; reports go to the topic of this name.
+        Name of the run, and of the topic of its reports.
     context : Context
     timeout : float
         See `LocalEngine`.
     memory_limit_mb : int or None
-        Memory of one process; a share of the Dask worker's by default.
+        Memory of one process; by default a share of the memory of the Dask worker.
     longest_seconds : float
-        No further pair of a unit is begun then; what is left of it goes back to the run.
+        After this time no further pair is started; the rest of the unit goes back to the run.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class UnitMeasurer(WorkerPlugin):
         self._context = replace(
             self._context,
             machine=machine_name(),
-            features=folder if folder and folder.is_dir() else None,  # it may not be shared
+            features=folder if folder and folder.is_dir() else None,  # processes must not be shared
         )
         self._memory = self._memory_limit_mb or _memory_of(worker)
         self._different = _different_versions(self._versions)
@@ -107,7 +107,7 @@ class UnitMeasurer(WorkerPlugin):
         self._end_idle()
 
     def measure(self, key: str, unit: Unit) -> Measured:
-        """Measure a unit, or as many of its pairs as may be begun at a time.
+        """Measure a unit, or as many of its pairs as the time allows.
 
         Raises
         ------
@@ -134,14 +134,14 @@ class UnitMeasurer(WorkerPlugin):
                 return Measured(finished, unit if unit.work else None)
 
     def check(self) -> None:
-        """End what is under way when the run is over.
+        """End running processes when the run is over.
 
         Raises
         ------
         EngineError
         """
         if self._ending.is_set():
-            raise EngineError("the run is over; nothing is left to do here")
+            raise EngineError("the run is over")
 
     @property
     def machine(self) -> str:
@@ -149,7 +149,7 @@ class UnitMeasurer(WorkerPlugin):
 
     @contextlib.contextmanager
     def _turn(self) -> Iterator[None]:
-        """Wait until nothing else is measured on this machine, where the times are to be such."""
+        """Wait until nothing else is measured on this machine, if the timing requires that."""
         if self._context.protocol.timing != "exclusive":
             yield
             return
@@ -168,7 +168,7 @@ class UnitMeasurer(WorkerPlugin):
 
     @contextlib.contextmanager
     def _pool(self) -> Iterator[WorkerPool]:
-        """A process that is idle, or a new one; a Dask worker with several threads has several."""
+        """An idle process or a new one; a Dask worker with several threads has several."""
         with self._lock:
             self._countdown.cancel()
             idle = self._idle.pop() if self._idle else None
@@ -194,7 +194,7 @@ class UnitMeasurer(WorkerPlugin):
                 self._idle.pop().close()
 
     def _check_images(self, unit: Unit) -> None:
-        """Make sure that the images of a unit are those that the run was planned for.
+        """Check that the images of a unit are identical to those of the run.
 
         Raises
         ------
@@ -209,19 +209,20 @@ class UnitMeasurer(WorkerPlugin):
                 )
             except ImageError as error:
                 raise EngineError(
-                    f"the worker {self._worker.address} cannot read an image that the run has: "
+                    f"the worker {self._worker.address} cannot read an image of the run: "
                     f"{error}; mount the folder of the images there under the same path"
                 ) from error
             if not same:
                 raise EngineError(
-                    f"the worker {self._worker.address} has another image {name} than the run; "
+                    f"the image {name} of the worker {self._worker.address} differs from that of "
+                    "the run; "
                     "mount the folder of the images there under the same path"
                 )
             self._checked.add(name)
 
 
 class _Reporter:
-    """Tells the run what the process of a unit is doing, and the process when the run is over."""
+    """Reports to the run what the process is doing, and to the process when the run is over."""
 
     def __init__(self, worker: Worker, measurer: UnitMeasurer, key: str) -> None:
         self._worker = worker
@@ -252,7 +253,7 @@ class _Reporter:
 
 
 def measure(name: str, key: str, unit: Unit) -> Measured:
-    """The task: measure a unit of the run called `name` on the worker that this is called on."""
+    """The task: measure a unit of the run `name` on the worker that executes this."""
     measurer = get_worker().plugins.get(name)
     if not isinstance(measurer, UnitMeasurer):
         raise EngineError(
@@ -262,7 +263,7 @@ def measure(name: str, key: str, unit: Unit) -> Measured:
 
 
 def _memory_of(worker: Worker) -> int:
-    """MB for one process: of what the Dask worker may use, or its cores' share of the machine."""
+    """MB for one process, from the limit of the Dask worker or its share of the machine."""
     threads = worker.state.nthreads
     total = psutil.virtual_memory().total
     share = int(total * min(1.0, threads / (os.cpu_count() or 1)))
@@ -270,9 +271,9 @@ def _memory_of(worker: Worker) -> int:
 
 
 def _different_versions(wanted: Mapping[str, str]) -> str:
-    """Versions here that would give other rows, against those of the run; empty if there are none.
+    """Differences to the versions of the run that would change rows; empty if there are none.
 
-    Rows are known by the versions of the run: others must not be mixed with them.
+    Rows are identified by the versions of the run, so rows of other versions must not be mixed in.
     """
     here = software_versions()
     return " and ".join(

@@ -1,4 +1,4 @@
-"""Where points of one image truly lie in the other: by poses, intrinsics and depth."""
+"""True positions of points of one image in the other image, from poses, intrinsics and depth."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from aerocues.datasets.true_geometry import (
 
 @dataclass(frozen=True, eq=False)
 class DepthCorrespondence:
-    """Two images of a scene of which poses, intrinsics and depth are known.
+    """Two images of a scene with known poses, intrinsics and depth.
 
-    On the edge of a roof a point lies on two surfaces: what fits better counts.
+    At a depth edge, such as the edge of a roof, a point may belong to two surfaces; the better fit
+    counts.
     """
 
     first: Located

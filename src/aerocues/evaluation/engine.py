@@ -1,4 +1,4 @@
-"""What every engine does: take units, give back their rows, whatever happens to a process."""
+"""The interface of engines: they take units and return all rows, even if processes die."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aerocues.results.metrics import Row
 
 @dataclass(frozen=True)
 class Finished:
-    """A part of a unit that is settled, with its rows: a pair, or what had to be given up."""
+    """A finished part of a unit with its rows: a pair, or work that was given up."""
 
     unit: Unit
     rows: list[Row]
@@ -21,7 +21,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Activity:
-    """What one worker is doing, and for how many seconds; or what a run without any waits for."""
+    """The activity of one worker and its seconds; or what a run without workers waits for."""
 
     worker: int
     call: StageCall | None
@@ -33,7 +33,7 @@ Watch = Callable[[Sequence[Activity]], None]
 
 
 class Engine(Protocol):
-    """Runs units somewhere. The order in which they finish is not defined; their rows are."""
+    """Runs units. The order in which they finish is undefined, but their rows are not affected."""
 
     def run(
         self, units: Sequence[Unit], context: Context, watch: Watch
@@ -43,15 +43,15 @@ class Engine(Protocol):
         Parameters
         ----------
         units : sequence of Unit
-            In the order in which they are to be begun.
+            In the order in which to start them.
         context : Context
         watch : callable
-            Told several times a second what the workers are doing.
+            Called several times per second with the activity of the workers.
 
         Yields
         ------
         Finished
-            Each row of each unit exactly once, failed ones with their status.
+            Each row of each unit exactly once; failed rows have their status.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What becomes of a unit whose process or machine was lost."""
+"""Handles units whose process or machine was lost."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from aerocues.processes.child_process import Loss
 
 
 def settle_loss(context: Context, unit: Unit, loss: Loss) -> tuple[Finished | None, list[Unit]]:
-    """Divide a unit that was lost into what is given up and what is tried again.
+    """Divide a lost unit into a part that is given up and parts to retry.
 
     Returns
     -------
     given_up : Finished or None
-        The rows of what `loss` is to blame on, if that is certain.
+        The rows of the work that caused `loss`, if that is certain.
     remaining : list of Unit
-        What is to be tried again, each in a process of its own.
+        Parts to retry, each in its own process.
     """
     remaining, guilty = split(
         unit,
@@ -32,7 +32,7 @@ def settle_loss(context: Context, unit: Unit, loss: Loss) -> tuple[Finished | No
 
 
 def _pairs_of(dataset: Dataset, call: StageCall | None) -> frozenset[int] | None:
-    """The pairs that need the features of one image; None where a call is about a pair."""
+    """The pairs that need the features of the image of a call; None if the call is about a pair."""
     if call is None or call.stage not in ("detect", "describe"):
         return None
     return frozenset(

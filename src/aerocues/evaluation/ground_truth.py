@@ -1,4 +1,4 @@
-"""Metrics against what is known to be true."""
+"""Metrics against ground truth."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def _distinct(points: Points) -> NDArray[np.float64]:
 def repeatability(points_1: Points, points_2: Points, truth: Correspondence) -> float | None:
     """Share of covisible keypoints found again, one to one (Mikolajczyk et al., IJCV 2005).
 
-    Two keypoints are the same where each is the other's nearest and they lie at most 3 px apart
-    in image 2. Keypoints at one position (SIFT has one for each orientation) count once. The share
-    is of the smaller of the two covisible sets.
+    Two keypoints correspond if each is the nearest to the other and they are at most 3 px apart in
+    image 2. Keypoints at the same position (SIFT has one per orientation) count once. The share
+    refers to the smaller of the two covisible sets.
 
     Returns
     -------
     float or None
-        None where one image has no covisible keypoint.
+        None if one image has no covisible keypoints.
     """
-    # A tenth of a second in each worker, of which most never come here.
+    # The import takes a tenth of a second in each worker, and most workers never need it.
     from scipy.spatial import cKDTree
 
     moved, second = truth.shared(_distinct(points_1), _distinct(points_2))
@@ -46,7 +46,7 @@ def corner_error(
 ) -> float:
     """Mean distance in pixels between the four corners of image 1 under both homographies.
 
-    Infinite where there is no estimate or it sends a corner through infinity.
+    Infinite if there is no estimate, or if it maps a corner to infinity.
     """
     if estimate is None:
         return float("inf")
@@ -54,7 +54,7 @@ def corner_error(
     corners = np.array(
         [(0, 0), (width - 1, 0), (width - 1, height - 1), (0, height - 1)], np.float64
     )
-    # A homography is known up to sign; the centre must stay in front of the camera.
+    # The sign of a homography is arbitrary; the centre must be in front of the camera.
     centre = np.array([(width - 1) / 2, (height - 1) / 2, 1.0])
     oriented = estimate if estimate[2] @ centre > 0 else -estimate
     difference = transfer(corners, oriented) - transfer(corners, homography)

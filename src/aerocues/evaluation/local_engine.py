@@ -1,4 +1,4 @@
-"""The default engine: worker processes on this machine, watched for death, time and memory."""
+"""The default engine: worker processes on this machine, with limits of time and memory."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class LocalEngine:
     Parameters
     ----------
     workers : int
-        Processes at a time.
+        Number of processes.
     timeout : float
-        CPU seconds that one stage call may use, and wall seconds for which it may sit idle.
+        Limit of the CPU seconds of one stage call, and of the wall seconds that it may be idle.
     memory_limit_mb : int
         Memory of one worker.
     """
@@ -41,19 +41,19 @@ class LocalEngine:
 
     @contextlib.contextmanager
     def standing(self, context: Context) -> Iterator[Engine]:
-        """An engine whose workers, with the features that they hold, outlive a call of `run`."""
+        """An engine whose workers, with their cached features, are kept between calls of `run`."""
         with contextlib.closing(self._pool(context)) as pool:
             yield _Standing(pool)
 
 
 @dataclass(frozen=True)
 class _Standing:
-    """Workers that serve one context."""
+    """Workers for one context."""
 
     pool: WorkerPool
 
     def run(
         self, units: Sequence[Unit], context: Context, watch: Watch
     ) -> Generator[Finished, None, None]:
-        """Run all units; `context` is the one that the workers were started with."""
+        """Run all units; `context` must be the context of the workers."""
         yield from self.pool.run(units, watch)

@@ -1,8 +1,8 @@
-"""Which passes a run makes over the pairs: one for quality, one for times, or one for both.
+"""The passes of a run over the pairs: one for quality, one for times, or one for both.
 
-Quality does not depend on who else is running, so all cores measure it at once, with exact search
-in place of brute force, which finds the same matches. Times do: some pairs are measured again, one
-stage call at a time on a core of its own.
+Quality does not depend on other processes, so it is measured on all cores at once, with exact
+search in place of brute force (the matches are the same). Times do depend on them, so some pairs
+are measured again, one stage call at a time on a core of its own.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ALL_PAIRS = 0
 
 @dataclass(frozen=True)
 class Pass:
-    """One pass: how it is timed, and over which pairs; None stands for all."""
+    """One pass: its timing, and its pairs (None: all pairs)."""
 
     timing: Timing
     pairs: frozenset[int] | None = None
@@ -34,24 +34,24 @@ def passes(pairs: Sequence[Pair], timing: Timing, timed_pairs: int, seed: int) -
     Parameters
     ----------
     pairs : sequence of Pair
-        Of the dataset.
+        Pairs of the dataset.
     timing : {"exclusive", "shared", "estimated"}
-        The times that are asked for.
+        The requested timing.
     timed_pairs : int
-        How many pairs exclusive timing takes; 0 for all.
+        Number of pairs with exclusive timing; 0 for all.
     seed : int
     """
     if timing != "exclusive":
         return (Pass(timing),)
     if timed_pairs == ALL_PAIRS or timed_pairs >= len(pairs):
         return (Pass("exclusive"),)
-    # Without exact search the first pass waits for brute force.
+    # Without exact search the first pass uses brute force.
     quality: Timing = "shared" if why_not_exact() else "estimated"
     return Pass(quality), Pass("exclusive", _sample(pairs, timed_pairs, seed))
 
 
 def timed_alone(turns: Sequence[Pass], pairs: Sequence[Pair]) -> frozenset[int]:
-    """Numbers of the pairs that some pass times by themselves."""
+    """Numbers of the pairs with exclusive timing."""
     return frozenset(
         pair.index
         for turn in turns
@@ -62,9 +62,9 @@ def timed_alone(turns: Sequence[Pass], pairs: Sequence[Pair]) -> frozenset[int]:
 
 
 def _sample(pairs: Sequence[Pair], count: int, seed: int) -> frozenset[int]:
-    """Numbers of pairs chosen at random: one of each sequence, then the second of each, and so on.
+    """Numbers of randomly chosen pairs: one of each sequence, then a second of each, and so on.
 
-    A sample of more pairs holds the ones of fewer, so that what was timed stays of use.
+    A larger sample contains the smaller ones, so that earlier timings remain useful.
     """
     rng = np.random.default_rng(seed)
     by_sequence: dict[str, list[int]] = {}

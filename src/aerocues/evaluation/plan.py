@@ -1,4 +1,4 @@
-"""From a dataset and combinations to units of work, leaving out what is in the store already."""
+"""Plans units of work from a dataset and combinations, without what is already stored."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PAIRS_PER_UNIT = 5
 
 @dataclass(frozen=True)
 class Exclusion:
-    """A combination that some pairs of a dataset rule out, and why."""
+    """A combination that cannot run on some pairs of a dataset, and why."""
 
     combination: Combination
     reason: str
@@ -28,7 +28,7 @@ class Exclusion:
 
 @dataclass(frozen=True)
 class Plan:
-    """Units to be done, all planned rows, and what the images rule out."""
+    """Units to run, all planned rows, and excluded combinations."""
 
     units: tuple[Unit, ...]
     rows: tuple[PlannedRow, ...]
@@ -49,13 +49,13 @@ class Plan:
 
 @dataclass(frozen=True)
 class _Keys:
-    """Hashes of what is read: images and, where they are known, their true views."""
+    """Hashes of the input: images and, if known, their true views."""
 
     images: Mapping[str, str]
     views: Mapping[str, str]
 
     def truth(self, pair: Pair) -> object:
-        """What is known to be true of a pair."""
+        """The part of the key of a pair that its ground truth decides; None without truth."""
         if pair.homography is not None:
             return pair.homography.tolist()
         views = [self.views.get(name) for name in (pair.image_1, pair.image_2)]
@@ -65,7 +65,7 @@ class _Keys:
 def _row_key(
     context: Context, pair: Pair, combination: Combination, keys: _Keys, method_key: str
 ) -> str:
-    """What decides the measurement, and nothing else: no name and no number."""
+    """Hash of everything that the measurement depends on, without names and numbers."""
     return content_hash(
         [
             context.settings_key,
@@ -78,7 +78,7 @@ def _row_key(
 
 
 def _groups(pairs: Sequence[Pair]) -> Iterator[list[Pair]]:
-    """Runs of consecutive pairs, cut where the sequence changes."""
+    """Runs of consecutive pairs, split where the sequence changes."""
     by_sequence: list[list[Pair]] = []
     for pair in pairs:
         if by_sequence and by_sequence[-1][-1].sequence == pair.sequence:
@@ -94,12 +94,12 @@ def _groups(pairs: Sequence[Pair]) -> Iterator[list[Pair]]:
 def _gray_reason(context: Context, combination: Combination) -> str | None:
     if not context.methods.descriptors[combination.descriptor].needs_colour:
         return None
-    return f"{combination.descriptor} needs three colour channels, and images are gray"
+    return f"{combination.descriptor} needs three colour channels, but the images are gray"
 
 
 @dataclass
 class _Tally:
-    """What is counted while the work is divided."""
+    """Counts that are updated while the work is divided."""
 
     rows: list[PlannedRow] = field(default_factory=list)
     ruled_out: Counter[tuple[Combination, str]] = field(default_factory=Counter)
@@ -130,9 +130,9 @@ class _Planner:
         self.tally = _Tally()
 
     def units(self, detector: str, group: Sequence[Pair]) -> Iterator[Unit]:
-        """What is left to do for a detector on consecutive pairs.
+        """The remaining work of a detector on consecutive pairs.
 
-        Costly descriptors are units of their own, which spreads them over the workers.
+        Expensive descriptors get their own units, so that they are distributed over the workers.
         """
         methods = self._context.methods
         combinations = [c for c in self._method_keys if c.detector == detector]
@@ -172,24 +172,24 @@ def make_plan(
     progress: Callable[[int, int], None] = lambda done, total: None,
     pairs: frozenset[int] | None = None,
 ) -> Plan:
-    """Divide the work into units, the costliest first.
+    """Divide the work into units, the most expensive first.
 
     Parameters
     ----------
     context : Context
     combinations : sequence of Combination
-        Runnable ones.
+        Runnable combinations.
     is_present : callable
-        Whether the row with a given key is in the store.
+        Returns whether the row with a given key is stored.
     progress : callable
-        Told how many of all images have been read for their hashes.
+        Called with the number of images that were read for their hashes, and the total.
     pairs : frozenset of int, optional
         Numbers of the pairs to plan for; all by default.
 
     Raises
     ------
     ImageError
-        If a file cannot be read at all.
+        If a file cannot be read.
     """
     images = context.dataset.images
     keys, views = dict[str, str](), dict[str, str]()

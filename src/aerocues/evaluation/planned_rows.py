@@ -1,7 +1,7 @@
-"""The rows that a results folder is to hold: what each measured row is about.
+"""The planned rows of a results folder, which give measurements their names.
 
-A measurement is named by its content: a key of the images' pixels, the methods and the protocol.
-What the images are called, and which number a pair has, may change; this table says it.
+The key of a measurement depends on the pixels, the methods and the protocol. Names of images and
+numbers of pairs can change; they are stored in this table.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ def planned_table(
     ----------
     context : Context
     dataset_key : str
-        How the images are read.
+        Hash of how the images are read.
     rows : sequence of PlannedRow
     timed : container of int
-        Pairs that are to be timed by themselves.
+        Pairs with exclusive timing.
 
     Returns
     -------
     pl.DataFrame
-        The columns that name a row (`schema.IDENTITY`), ``row_key``, ``settings_key``,
+        The columns that identify a row (`schema.IDENTITY`), ``row_key``, ``settings_key``,
         ``dataset_key`` and ``timed_alone``, a boolean.
     """
     import polars as pl

@@ -1,4 +1,4 @@
-"""The pose of one camera relative to another, estimated from matches, against the true one."""
+"""The pose of one camera relative to another: estimated from matches, and its error."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _SAME_PLACE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class RelativePose:
-    """How camera 2 stands to camera 1.
+    """The pose of camera 2 relative to camera 1.
 
     Parameters
     ----------
     rotation : (3, 3) float64
-        From the axes of camera 1 to those of camera 2.
+        Rotation from the axes of camera 1 to those of camera 2.
     direction : (3,) float64
-        Of the shift, in the axes of camera 2; its length means nothing.
+        Direction of the translation in the axes of camera 2; its length is arbitrary.
     """
 
     rotation: NDArray[np.float64]
@@ -33,7 +33,7 @@ class RelativePose:
 
 
 def true_pose(first: TrueView, second: TrueView) -> RelativePose:
-    """The pose that two true views have."""
+    """The relative pose of two true views."""
     return RelativePose(
         second.rotation @ first.rotation.T, second.rotation @ (first.centre - second.centre)
     )
@@ -55,10 +55,10 @@ def estimate_pose(
     cameras: tuple[PinholeCamera, PinholeCamera],
     parameters: Any,
 ) -> RelativePose | None:
-    """The pose by the essential matrix of (M, 2) matched points; None where none is found.
+    """The pose from the essential matrix of (M, 2) matched points; None if there is no solution.
 
     Nister, "An efficient solution to the five-point relative pose problem", PAMI 2004, inside
-    MAGSAC++; of the four poses of a matrix the one with most points in front of both cameras.
+    MAGSAC++. Of the four poses of a matrix, the one with most points in front of both cameras.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def estimate_pose(
             points_1, points_2, first, second, None, None, parameters
         )
     except cv2.error as error:
-        if "!model.empty()" in str(error):  # every sample was degenerate
+        if "!model.empty()" in str(error):  # all samples were degenerate
             return None
         raise
     if essential is None or essential.shape != (3, 3) or not np.isfinite(essential).all():
@@ -81,7 +81,7 @@ def estimate_pose(
     chosen = np.asarray(mask).reshape(-1).astype(bool)
     if not chosen.any():
         return None
-    # The pixels of each camera in its own units, as one call knows one camera only.
+    # Normalised coordinates of each camera, because one call supports only one camera.
     rays_1, rays_2 = (
         np.ascontiguousarray(cv2.undistortPoints(points[chosen][:, None], matrix, None)[:, 0])
         for points, matrix in ((points_1, first), (points_2, second))
@@ -91,10 +91,10 @@ def estimate_pose(
 
 
 def pose_error(estimate: RelativePose | None, truth: RelativePose) -> float:
-    """The larger of the angles, in degrees, between the rotations and between the directions.
+    """The larger of the two angles, in degrees, between rotations and between directions.
 
-    Infinite without an estimate. Cameras that stand at one place have no direction: the rotation
-    alone counts.
+    Infinite without an estimate. Cameras at the same position have no direction; then only the
+    rotation counts.
     """
     if estimate is None:
         return float("inf")

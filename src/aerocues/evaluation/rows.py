@@ -1,4 +1,4 @@
-"""Rows before they are measured: what names them, and those of work that could not be done."""
+"""Rows before they are measured, and rows of failed work."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aerocues.results.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS, empty_ro
 
 
 def begin_row(context: Context, pair: Pair, combination: Combination, key: str) -> Row:
-    """A row that says what it is about and where it comes from; the rest is unknown."""
+    """A row with its identity and provenance; all other values are unknown."""
     row = empty_row()
     row.update(
         dataset=context.dataset.name,
@@ -41,7 +41,7 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
         measured_at=time.time(),
     )
     if pair.homography is not None:
-        # Where no homography is found, none is right: a failed pair counts in the mean.
+        # Without a homography the error is infinite: a failed pair counts in the mean.
         row["homography_error"] = float("inf")
         row.update({f"homography_auc@{threshold}": 0.0 for threshold in PIXEL_THRESHOLDS})
     if context.dataset.true_views(pair) is not None:
@@ -51,7 +51,7 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
 
 
 def failed_rows(context: Context, unit: Unit, status: str, message: str) -> list[Row]:
-    """Rows for work that could not be done."""
+    """Rows for work that failed."""
     return [
         begin_row(context, context.dataset.pair(work.pair), combination, key)
         | {"status": status, "message": message}

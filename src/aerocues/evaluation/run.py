@@ -1,4 +1,4 @@
-"""The whole measurement: dataset and combinations in, a results folder out."""
+"""The complete measurement: from a dataset and combinations to a results folder."""
 
 from __future__ import annotations
 
@@ -58,16 +58,17 @@ class Observer:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a worker may use; ``None`` stands for a default that suits the machine.
+    """Limits of workers; None means a default for this machine.
 
     Parameters
     ----------
     workers : int or None
-        Processes at a time; as many as there are cores by default. Exclusive timing takes one.
+        Number of processes; by default the number of cores. Exclusive timing uses one.
     timeout : float
-        CPU seconds of one stage call, and the wall seconds that it may sit idle.
+        Limit of the CPU seconds of one stage call, and of the wall seconds that it may be idle.
     memory_limit_mb : int or None
-        Memory of one worker; 80 % of the machine's divided by the workers.
+        Memory of one worker; by default 80 % of the memory of the machine, divided by the number of
+        workers.
     """
 
     workers: int | None = None
@@ -76,7 +77,7 @@ class Limits:
 
 
 def usable_cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -138,42 +139,43 @@ def run(
 ) -> Results:
     """Measure combinations on the pairs of a dataset.
 
-    What the results folder holds already is not measured again; what was interrupted is.
+    Rows that are already in the results folder are not measured again. An interrupted run
+    continues.
 
     Parameters
     ----------
     dataset : Dataset or str
-        From `aerocues.open_dataset`, or what that would be given.
+        From `aerocues.open_dataset`, or the text for it.
     combinations : str or iterable, optional
         Globs such as ``"ORB-*-HAM-BF,AKAZE-SIFT-*"`` or combinations; all meaningful ones by
         default.
     output : path
-        Results folder, made where it is missing.
+        Results folder; it is created if it does not exist.
     detectors, descriptors, everything
-        Narrow or widen the choice of combinations; see `aerocues.methods.selection.select`.
+        Restrict or widen the selection of combinations; see `aerocues.methods.selection.select`.
     preset : str or Preset
         Preset of parameters and protocol, or the file of one; see `aerocues.methods.presets`.
     seed : int
         Set before every stage call.
     timing : {"exclusive", "shared", "estimated"}
-        Whether some pairs are timed by themselves once more, or times are those of workers beside
-        each other, of brute force on a part of the descriptors where they are estimated. Quality
-        does not depend on it.
+        ``exclusive`` measures some pairs again to time them on a core of their own. ``shared``
+        keeps the times of workers that run side by side. ``estimated`` does too, and times brute
+        force on a sample of the descriptors. Quality does not depend on it.
     timed_pairs : int
-        How many pairs exclusive timing takes, a seeded sample; 0 for all. The times of the other
-        pairs are scaled by what they show.
+        Number of pairs with exclusive timing, a seeded sample; 0 for all. They scale the times of
+        the other pairs.
     limit : KeypointLimit
-        How many keypoints of an image are kept; all by default.
+        Maximum number of keypoints per image; all by default.
     limits : Limits, optional
         Workers, time and memory.
     features : path, optional
-        Folder in which features are kept, and found by other runs.
+        Folder in which features are stored and reused by other runs.
     retry_failed : bool
-        Measure again what crashed, raised an error, ran out of time or memory.
+        Measure rows again that crashed, raised an error, or exceeded the limits of time or memory.
     observer : Observer, optional
-        Told how it goes on.
+        Receives the progress.
     engine : Engine, optional
-        Where units of all passes run; worker processes on this machine by default.
+        Runs the units of all passes; by default worker processes on this machine.
 
     Returns
     -------
@@ -182,7 +184,7 @@ def run(
     Raises
     ------
     AerocuesError
-        If the selection, the images or the results folder do not allow a run.
+        If the selection, the images or the results folder are invalid.
     """
     if isinstance(dataset, str):
         dataset = open_dataset(dataset)
@@ -215,7 +217,7 @@ def run(
 def _record(
     store: Store, planned: pl.DataFrame, facts: Mapping[str, object], observer: Observer
 ) -> None:
-    """Store what is to be measured; tell of rows that therefore count no longer."""
+    """Store the plan; report rows that are no longer part of it."""
     before = store.planned_keys()
     store.write_plan(planned)
     store.write_run(facts)
@@ -233,7 +235,7 @@ def _plan(
     *,
     retry_failed: bool,
 ) -> Plan:
-    """The plan of a pass, of which the store may hold a part already."""
+    """The plan of a pass, without rows that are already stored."""
     present: frozenset[str] = frozenset()
     if store is not None:
         present = store.present(turn.timing, retry_failed=retry_failed)
@@ -256,7 +258,7 @@ def plan_run(
     retry_failed: bool = False,
     observer: Observer | None = None,
 ) -> list[tuple[Timing, Plan]]:
-    """What `run` would do with the same arguments, pass by pass; nothing is measured or written."""
+    """The plans of `run` for the same arguments, pass by pass. Nothing is measured or written."""
     parts = as_preset(preset)
     context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
     kept = {"detectors": detectors, "descriptors": descriptors}
@@ -272,7 +274,7 @@ def plan_run(
 def _measure(
     finished_units: Generator[Finished, None, None], store: Store, observer: Observer
 ) -> None:
-    with contextlib.closing(finished_units):  # an interruption ends the workers here and now
+    with contextlib.closing(finished_units):  # an interruption ends the workers immediately
         for finished in finished_units:
             store.write_finished(finished.unit.detector, finished.rows)
             observer.finished(finished)

@@ -1,4 +1,4 @@
-"""What the truth says of two described images and their matches."""
+"""Compares two described images and their matches with the ground truth."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Matched:
 
 
 class TruthComparison:
-    """Fills what follows from ground truth into rows; nothing where there is none.
+    """Fills the ground-truth columns of rows; does nothing without ground truth.
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ class TruthComparison:
         self._depth: DepthCorrespondence | None = None
 
     def begin_pair(self) -> None:
-        """Forget what was remembered of the pair before."""
+        """Forget the cached data of the previous pair."""
         self._repeatabilities.clear()
         self._depth = None
 
     def compare(self, row: Row, views: TwoViews, found: Matched, verifier: Verifier) -> None:
-        """Add what is known: of matches, of keypoints, of a homography, of the pose.
+        """Add the ground-truth metrics of matches, keypoints, homography and pose.
 
-        The verifier estimates models as that of the same matches was.
+        The verifier estimates models in the same way as for the matches themselves.
         """
         correspondence = self._correspondence(views)
         if correspondence is not None:

@@ -1,4 +1,4 @@
-"""A unit of work: one detector on a run of consecutive pairs; and how it is split on failure."""
+"""A unit of work: one detector on consecutive pairs, and how it is split on failure."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PairWork:
     row_keys: tuple[str, ...]
 
     def only(self, combinations: frozenset[Combination], *, keep: bool) -> PairWork:
-        """The same work with, or without, the given combinations."""
+        """The same work with only, or without, the given combinations."""
         kept = [
             (combination, key)
             for combination, key in zip(self.combinations, self.row_keys, strict=True)
@@ -38,10 +38,10 @@ class PairWork:
 
 @dataclass(frozen=True)
 class Unit:
-    """One detector on consecutive pairs; the features of an image are shared among them.
+    """One detector on consecutive pairs, which share the features of images.
 
-    ``alone`` asks for a fresh process, of which nothing else can have harmed the memory. ``cost``
-    is an estimate in CPU seconds.
+    ``alone`` requires a new process, whose memory cannot have been corrupted before. ``cost`` is an
+    estimate in CPU seconds.
     """
 
     detector: str
@@ -54,7 +54,7 @@ class Unit:
         return sum(len(work.combinations) for work in self.work)
 
     def parts(self, *positions: int) -> list[Unit]:
-        """The unit cut before the pairs at the given positions; parts may be empty."""
+        """The unit split before the pairs at the given positions; parts may be empty."""
         bounds = (0, *positions, len(self.work))
         share = self.cost / len(self.work)
         return [
@@ -65,9 +65,9 @@ class Unit:
 
 @dataclass(frozen=True)
 class Context:
-    """What every unit of a run shares; sent to each worker once.
+    """The context that all units of a run share; it is sent to each worker once.
 
-    ``features`` is a folder in which features are kept for other runs, if that is asked for.
+    ``features`` is an optional folder in which features are stored for other runs.
     """
 
     dataset: Dataset
@@ -79,12 +79,12 @@ class Context:
     features: Path | None = None
 
     def timed(self, timing: Timing) -> Context:
-        """The same with another timing, which no row key depends on."""
+        """The same context with another timing, which does not change row keys."""
         return replace(self, protocol=replace(self.protocol, timing=timing))
 
 
 def _blamed(work: PairWork, call: StageCall, pairs: frozenset[int]) -> frozenset[Combination]:
-    """The combinations of a pair that cannot be had because `call` does not return."""
+    """The combinations of a pair that are blocked because `call` does not return."""
     if work.pair not in pairs:
         return frozenset()
     if call.stage == "detect":
@@ -103,19 +103,20 @@ def split(
     ----------
     unit : Unit
     call : StageCall or None
-        The call that did not return, where it is known.
+        The call that did not return, if known.
     certain : bool
-        Whether the call itself is to blame. A process that died may also have been harmed by what
-        it did before: the pair is then tried once more alone.
+        Whether the call itself is the cause. A process that died may also have been damaged by
+        earlier calls; the pair is then retried alone.
     pairs : frozenset of int, optional
-        The pairs that need the result of the call: those of its image. Only its own by default.
+        The pairs that need the result of the call, which are those of its image. By default only
+        its own pair.
 
     Returns
     -------
     remaining : list of Unit
         What is to be tried again, each in a process of its own.
     guilty : Unit or None
-        What is given up.
+        The part that is given up.
     """
     position = next((i for i, work in enumerate(unit.work) if call and work.pair == call.pair), 0)
     before, pair, after = unit.parts(position, position + 1)

@@ -1,4 +1,4 @@
-"""Which unit comes next: the costliest, and with it those that share its images."""
+"""The order of units: the most expensive first, followed by those that share its images."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from aerocues.evaluation.unit import Unit
 
 
 class UnitQueue:
-    """Units in the order in which they are to be begun.
+    """Units in the order in which to start them.
 
-    Neighbouring units of a detector share an image. A worker that has just finished one gets the
-    next, whose shared image it still holds; the others leave that one to it where they can.
+    Neighbouring units of a detector share an image. A worker that has finished one of them gets the
+    next, because it still has the features of the shared image; other workers avoid this unit if
+    they can.
 
     Parameters
     ----------
     units : sequence of Unit
-        The costliest first.
+        The most expensive first.
     dataset : Dataset
     """
 
@@ -30,18 +31,18 @@ class UnitQueue:
         return bool(self._left)
 
     def put_back(self, units: Iterable[Unit]) -> None:
-        """Put units at the head."""
+        """Put units at the front."""
         self._left[:0] = units
 
     def take(self, finished: Unit | None, begun: Collection[Unit]) -> Unit:
-        """The next unit for a worker; IndexError where there is none.
+        """The next unit for a worker; IndexError if there is none.
 
         Parameters
         ----------
         finished : Unit or None
-            What the worker did last.
+            The latest unit of the worker.
         begun : collection of Unit
-            What other workers are at.
+            The current units of other workers.
         """
         place = 0
         if finished is not None:
@@ -57,7 +58,7 @@ class UnitQueue:
         return self._left.pop(place)
 
     def _shares(self, unit: Unit, other: Unit) -> bool:
-        """Whether what one found out serves the other."""
+        """Whether one unit can use the features of the other."""
         same = unit.detector == other.detector
         return same and not self._images_of(unit).isdisjoint(self._images_of(other))
 

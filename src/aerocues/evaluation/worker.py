@@ -13,7 +13,7 @@ from aerocues.processes.heartbeat import Heartbeat
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     """Evaluate units until the parent closes the pipe."""
-    # Takes long enough for the parent to be gone meanwhile: the watch over it stands already.
+    # This import takes so long that the parent may die meanwhile; it is already being watched.
     from aerocues.evaluation.evaluator import Evaluator
 
     context = pipe.recv()

@@ -1,4 +1,4 @@
-"""Worker processes and what each of them is at."""
+"""Worker processes and the current work of each."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class WorkerPool:
                 self._busy.popitem()[0].stop()
 
     def _fill(self, queue: UnitQueue) -> None:
-        """Give every worker that has nothing to do the next unit."""
+        """Give the next unit to every idle worker."""
         while queue and len(self._busy) < self._workers:
             idle = self._idle.pop() if self._idle else None
             finished = self._finished.pop(idle, None) if idle else None
@@ -71,7 +71,7 @@ class WorkerPool:
         return [worker.activity() for worker in sorted(self._busy, key=lambda w: w.number)]
 
     def _collect(self) -> Iterator[tuple[Finished | None, list[Unit]]]:
-        """Finished units, and what remains of those whose worker was lost."""
+        """Collect finished units, and requeue the rest of units whose worker was lost."""
         ready = wait([worker.pipe for worker in self._busy], POLL_SECONDS)
         for worker in list(self._busy):
             if worker.pipe in ready:
@@ -86,7 +86,7 @@ class WorkerPool:
                 yield self._settle(worker, loss)
 
     def _advance(self, worker: WorkerProcess, rows: list[Row]) -> Finished:
-        """Take the rows of the next pair of a worker's unit."""
+        """Receive the rows of the next pair of a worker's unit."""
         unit = self._busy.pop(worker)
         done, rest = unit.parts(1)
         if rest.work:
@@ -97,7 +97,7 @@ class WorkerPool:
 
     def _retire(self, worker: WorkerProcess, unit: Unit) -> None:
         if self._needs_own_process(unit):
-            # Its memory may be corrupt: nothing else is to be measured there.
+            # Its memory may be corrupted: nothing else may be measured there.
             worker.stop()
         else:
             self._idle.append(worker)

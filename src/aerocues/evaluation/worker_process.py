@@ -1,4 +1,4 @@
-"""A worker process of the engine as its parent sees it."""
+"""The parent's side of a worker process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class WorkerProcess(ChildProcess):
         self.send(unit)
 
     def rows(self) -> list[Row] | Loss:
-        """The rows of the unit's next pair, or how the worker was lost."""
+        """The rows of the next pair of the unit, or how the worker was lost."""
         received: list[Row] | Loss = self.receive()
         return received
 
@@ -38,7 +38,7 @@ class WorkerProcess(ChildProcess):
 
 
 def _core(number: int) -> int:
-    """A core of its own for each worker, from the last one down; -1 where none can be chosen."""
+    """A separate core for each worker, from the last core down; -1 if none can be chosen."""
     if not hasattr(os, "sched_getaffinity"):
         return -1
     cores = sorted(os.sched_getaffinity(0), reverse=True)
