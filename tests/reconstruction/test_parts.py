@@ -28,7 +28,7 @@ def test_parts_of_a_graph() -> None:
 
 def test_parts_in_words() -> None:
     assert told_parts([["a", "b", "c", "d"], ["e", "f"], ["g"], ["h"]]) == (
-        "4 parts: 4 images (a, b, c, ...), 2 images (e, f), 2 linked with none (g, h)"
+        "4 parts: 4 images (a, b, c, ...), 2 images (e, f), 2 without links (g, h)"
     )
 
 
@@ -94,13 +94,13 @@ def test_an_incomplete_model_tells_the_parts_or_what_is_left_out() -> None:
     outcome = judged(IMAGES, ["a", "b", "c"], torn, None, Requirements())
     assert outcome.status == "incomplete"
     assert outcome.message == (
-        "the model holds 3 of 6 images; the graph of verified pairs falls into 2 parts: "
+        "the model has 3 of 6 images; the graph of verified pairs consists of 2 parts: "
         "3 images (a, b, c), 3 images (d, e, f)"
     )
     outcome = judged(IMAGES, ["a", "b", "c", "d"], WHOLE, None, Requirements())
     assert outcome.status == "incomplete"
     assert outcome.message == (
-        "the model holds 4 of 6 images, though the graph of verified pairs is whole; left out: "
+        "the model has 4 of 6 images, although the graph of verified pairs is connected; missing: "
         "e (2 pairs, at most 30 inliers), f (1 pairs, at most 20 inliers)"
     )
     assert judged(IMAGES, IMAGES[:5], WHOLE, None, Requirements()).status == "ok"

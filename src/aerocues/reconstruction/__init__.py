@@ -1,1 +1,1 @@
-"""Reconstructs scenes with COLMAP from any combination, and judges the models."""
+"""Reconstructs scenes with COLMAP from any combination, and evaluates the models."""

@@ -1,4 +1,4 @@
-"""Similarity between two frames, and how far cameras are from where they were."""
+"""Similarity transforms between two frames, and errors of camera positions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 FEWEST = 3
 MOST_TRIPLES = 1000
-# Of the second to the first singular value: below, points lie on a line.
+# Ratio of the second to the first singular value; below it, points lie on a line.
 ON_A_LINE = 1e-3
 
 
@@ -26,12 +26,12 @@ class Similarity:
     translation: Array
 
     def apply(self, points: Array) -> Array:
-        """Points, (N, 3)."""
+        """The transformed points, (N, 3)."""
         return self.scale * points @ self.rotation.T + self.translation
 
 
 def similarity(source: Array, target: Array) -> Similarity | None:
-    """The similarity that brings points closest to others, by least squares.
+    """The least-squares similarity from source to target points.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def similarity(source: Array, target: Array) -> Similarity | None:
     Returns
     -------
     Similarity or None
-        None where it is not determined: fewer than 3 points, or all on a line.
+        None if it is not determined: fewer than 3 points, or all points on a line.
 
     References
     ----------
@@ -63,7 +63,7 @@ def similarity(source: Array, target: Array) -> Similarity | None:
 def robust_similarity(
     source: Array, target: Array, tolerance: float, seed: int = 0
 ) -> Similarity | None:
-    """The similarity that brings most points to within a tolerance of others (RANSAC).
+    """The similarity that maps most source points to within a tolerance of the target (RANSAC).
 
     Parameters
     ----------
@@ -71,12 +71,13 @@ def robust_similarity(
     tolerance : float
         In the unit of `target`.
     seed : int
-        Of the triples that are tried; all are where there are no more than `MOST_TRIPLES`.
+        Seed of the tried triples. All triples are tried if there are at most `MOST_TRIPLES`.
 
     Returns
     -------
     Similarity or None
-        By least squares over the points within the tolerance; None where none is determined.
+        The least-squares similarity of the points within the tolerance; None if it is not
+        determined.
     """
     best: Similarity | None = None
     best_found = (0, -np.inf)
@@ -107,12 +108,12 @@ def _on_a_line(centred: Array) -> bool:
 
 
 def extent(positions: Array) -> float:
-    """Diagonal of the box around positions, (N, 3), in their unit."""
+    """Diagonal of the bounding box of positions, (N, 3), in their unit."""
     return float(np.linalg.norm(np.ptp(positions, axis=0)))
 
 
 def root_mean_square(values: Array) -> float:
-    """Square root of the mean square."""
+    """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 

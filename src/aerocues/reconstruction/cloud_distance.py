@@ -1,4 +1,4 @@
-"""Distances between clouds, as CloudCompare's cloud-to-cloud distance: to the nearest point."""
+"""Cloud-to-cloud distances to the nearest point, as in CloudCompare."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class CloudDistances:
-    """Distances in the frame of the reference, of each point of either cloud to the other."""
+    """Distances of each point to the other cloud, in both directions, in the reference frame."""
 
     to_reference: Array
     from_reference: Array
 
     def figures(self) -> Row:
-        """Median, root mean square and 95th percentile, both ways."""
+        """Median, root mean square and 95th percentile, in both directions."""
         return {
             **_statistics("cloud_distance", self.to_reference),
             **_statistics("reference_distance", self.from_reference),
@@ -39,7 +39,7 @@ def _statistics(name: str, distances: Array) -> Mapping[str, float]:
 
 
 def cloud_distances(cloud: Cloud, reference: Cloud) -> CloudDistances | None:
-    """Align a cloud with another by the centres of the cameras that both have, and measure.
+    """Align a cloud with a reference by their common cameras, and measure the distances.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def cloud_distances(cloud: Cloud, reference: Cloud) -> CloudDistances | None:
     Returns
     -------
     CloudDistances or None
-        None where fewer than three cameras are shared, these lie on a line, or a cloud is empty.
+        None if fewer than three cameras are shared, they lie on a line, or a cloud is empty.
     """
     from scipy.spatial import cKDTree
 

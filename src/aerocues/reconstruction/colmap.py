@@ -1,4 +1,4 @@
-"""Where the versions of pycolmap differ. It can end the process: import it in a child only."""
+"""Differences between versions of pycolmap. It can abort: import it only in a child process."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ UPGRADE = "install a newer one: pip install --upgrade pycolmap"
 
 
 def colmap_version() -> str:
-    """The version of pycolmap, which is not imported for it.
+    """The version of pycolmap, without importing it.
 
     Raises
     ------
     ReconstructionError
-        If it is not installed, as in the light install for boards.
+        If pycolmap is not installed, as in the light install for boards.
     """
     if find_spec("pycolmap") is None:
         raise ReconstructionError(
-            "3D models need pycolmap, which is not installed; install it: pip install pycolmap, "
-            "or take the results to a machine that has it (aerocues results --pack)"
+            "3D models need pycolmap, which is not installed; install it with: pip install "
+            "pycolmap, "
+            "or move the results to a machine that has it (aerocues results --pack)"
         )
     return version("pycolmap")
 
 
 def quiet() -> None:
-    """Keep COLMAP's own log to what ends it."""
+    """Limit COLMAP's log to fatal errors."""
     import pycolmap
 
     pycolmap.logging.minloglevel = 2
@@ -41,7 +42,7 @@ def quiet() -> None:
 
 
 def open_database(file: Path) -> Any:
-    """A database, made where it is missing."""
+    """A database; it is created if it does not exist."""
     import pycolmap
 
     opened = getattr(pycolmap.Database, "open", None)
@@ -59,7 +60,7 @@ def _major_minor() -> tuple[int, int]:
 
 
 def require(name: str, purpose: str) -> Any:
-    """A function of pycolmap; ReconstructionError where this version lacks it."""
+    """A function of pycolmap; ReconstructionError if this version lacks it."""
     import pycolmap
 
     found = getattr(pycolmap, name, None)
@@ -71,13 +72,13 @@ def require(name: str, purpose: str) -> Any:
 
 
 def registered(model: Any) -> list[Any]:
-    """The images of a model that have a pose, by name."""
+    """The registered images of a model, by name."""
     images = [image for image in model.images.values() if image.has_pose]
     return sorted(images, key=lambda image: str(image.name))
 
 
 def camera_from_world(image: Any) -> tuple[Array, Array]:
-    """Rotation (3, 3) and translation (3,) from the model's frame to the camera."""
+    """Rotation (3, 3) and translation (3,) from the frame of the model to the camera."""
     pose = image.cam_from_world
     matrix = np.asarray((pose() if callable(pose) else pose).matrix(), np.float64)
     return matrix[:, :3], matrix[:, 3]

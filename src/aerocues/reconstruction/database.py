@@ -1,4 +1,4 @@
-"""The database that COLMAP reconstructs from, and that its own program opens."""
+"""The input database of COLMAP, which its own program can open, too."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from aerocues.reconstruction.scene import Scene
 def write_database(
     file: Path, scene: Scene, matched: MatchedScene, linked: list[Names]
 ) -> dict[str, int]:
-    """Make the database anew: cameras, images, keypoints, and the matches of linked pairs.
+    """Create the database: cameras, images, keypoints, and the matches of linked pairs.
 
-    A file that is there, whole or damaged, is replaced.
+    An existing file is replaced, even if it is damaged.
 
     Returns
     -------
     dict of str to int
-        COLMAP's numbers of the images.
+        COLMAP's IDs of the images.
     """
-    for old in file.parent.glob(f"{file.name}*"):  # also what SQLite keeps beside it
+    for old in file.parent.glob(f"{file.name}*"):  # including the files that SQLite keeps beside it
         old.unlink()
     open_database(file).close()
     _import_images(file, scene)
@@ -68,7 +68,7 @@ def _rows(keypoints: Any) -> NDArray[np.float32]:
 
 
 def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]:
-    """Inliers of each verified pair of images."""
+    """Number of inliers of each verified pair of images."""
     import pycolmap
 
     names = {number: name for name, number in numbers.items()}

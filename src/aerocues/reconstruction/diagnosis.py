@@ -1,4 +1,4 @@
-"""Why there is no model, or not the one that was wanted, in words."""
+"""Explains why there is no model, or why it is not a success."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.protocol import Requirements
 
-# What COLMAP asks of the pair that a model begins with, after it has relaxed its demands twice.
+# COLMAP's requirements for the initial pair, after relaxing them twice.
 INITIAL_INLIERS = 25
 INITIAL_ANGLE = 4.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A row of `reconstruction_schema.RECONSTRUCTION_STATUSES`, and why."""
+    """A status of `reconstruction_schema.RECONSTRUCTION_STATUSES`, with the reason."""
 
     status: str
     message: str | None = None
 
 
 def without_features(counts: Mapping[str, int]) -> Outcome | None:
-    """Whether too few images have keypoints."""
+    """The failure if too few images have keypoints."""
     empty = [name for name, count in counts.items() if not count]
     if len(counts) - len(empty) >= 2:
         return None
@@ -36,7 +36,7 @@ def without_features(counts: Mapping[str, int]) -> Outcome | None:
 
 
 def without_links(pairs: int, linked: int, verified: int, *, chance: bool) -> Outcome | None:
-    """Whether no pair of images is verified; `chance` tells whether pairs had to beat it."""
+    """The failure if no pair is verified; `chance`: whether pairs had to beat chance."""
     if verified:
         return None
     asked = "matches that beat chance" if chance else "enough matches"
@@ -48,22 +48,22 @@ def without_links(pairs: int, linked: int, verified: int, *, chance: bool) -> Ou
 def without_model(
     database: Path, inliers: Mapping[Names, int], numbers: Mapping[str, int]
 ) -> Outcome:
-    """Why the mapper made no model at all."""
+    """Why the mapper made no model."""
     angles = _angles(database, inliers, numbers)
     most = max(inliers, key=lambda pair: (inliers[pair], pair))
     enough = [pair for pair in inliers if inliers[pair] >= INITIAL_INLIERS]
-    asks = f"COLMAP asks for {INITIAL_INLIERS} inliers and {INITIAL_ANGLE:g} degrees"
+    asks = f"COLMAP requires {INITIAL_INLIERS} inliers and {INITIAL_ANGLE:g} degrees"
     if not enough:
         told = f"the best pair ({_pair(most)}) has {inliers[most]} inliers"
-        return Outcome("no_initial_pair", f"no pair to begin with: {told}; {asks}")
+        return Outcome("no_initial_pair", f"no initial pair: {told}; {asks}")
     widest = max(enough, key=lambda pair: (angles[pair], pair))
     told = (
-        f"the pair with most inliers ({_pair(most)}) has {inliers[most]} at {angles[most]:.1f} "
+        f"the pair with the most inliers ({_pair(most)}) has {inliers[most]} at {angles[most]:.1f} "
         f"degrees, the widest angle ({_pair(widest)}) is {angles[widest]:.1f} with "
         f"{inliers[widest]}"
     )
     if angles[widest] < INITIAL_ANGLE:
-        return Outcome("no_initial_pair", f"no pair to begin with: {told}; {asks}")
+        return Outcome("no_initial_pair", f"no initial pair: {told}; {asks}")
     return Outcome("no_model", f"no pair could be extended to a model: {told}")
 
 
@@ -74,7 +74,7 @@ def _pair(names: Names) -> str:
 def _angles(
     database: Path, inliers: Mapping[Names, int], numbers: Mapping[str, int]
 ) -> dict[Names, float]:
-    """Median triangulation angle of each verified pair in degrees; 0 where it has no pose."""
+    """Median triangulation angle of each verified pair in degrees; 0 without a pose."""
     import pycolmap
 
     opened = open_database(database)
@@ -101,7 +101,7 @@ def _xy(keypoints: Any) -> Any:
 
 @dataclass(frozen=True)
 class Placement:
-    """Metres between the cameras of a model and where they were, and what is allowed."""
+    """Position errors of the cameras of a model in metres, and the tolerance."""
 
     errors: Mapping[str, float]
     tolerance: float
@@ -109,7 +109,7 @@ class Placement:
 
     @property
     def far(self) -> list[str]:
-        """Images whose cameras are not in their place, the farthest first."""
+        """Images whose cameras exceed the tolerance, the largest error first."""
         names = [name for name, error in self.errors.items() if error > self.tolerance]
         return sorted(names, key=lambda name: (-self.errors[name], name))
 
@@ -132,16 +132,16 @@ def judged(
     placement: Placement | None,
     requirements: Requirements,
 ) -> Outcome:
-    """Whether a model is whole and in its place.
+    """Judge whether a model is complete and correctly placed.
 
     Parameters
     ----------
     images, in_model : sequence of str
         All images of the scene, and those of the model.
     inliers : mapping of pairs to int
-        Of the verified pairs.
+        Inliers of the verified pairs.
     placement : Placement, optional
-        Where positions are known.
+        Position errors, if positions are known.
     requirements : Requirements
     """
     least = requirements.registered_share * len(images)
@@ -161,14 +161,15 @@ def judged(
 def _incomplete(
     images: Sequence[str], in_model: Sequence[str], inliers: Mapping[Names, int]
 ) -> str:
-    held = f"the model holds {len(in_model)} of {len(images)} images"
+    held = f"the model has {len(in_model)} of {len(images)} images"
     parts = parts_of(images, inliers)
     if len(parts) > 1:
-        return f"{held}; the graph of verified pairs falls into {told_parts(parts)}"
+        return f"{held}; the graph of verified pairs consists of {told_parts(parts)}"
     missing = [name for name in images if name not in set(in_model)]
     best = []
     for name in missing[:LISTED]:
         links = [count for pair, count in inliers.items() if name in pair]
         best.append(f"{name} ({len(links)} pairs, at most {max(links)} inliers)")
     more = ", ..." if len(missing) > LISTED else ""
-    return f"{held}, though the graph of verified pairs is whole; left out: {', '.join(best)}{more}"
+    whole = f"{held}, although the graph of verified pairs is connected"
+    return f"{whole}; missing: {', '.join(best)}{more}"

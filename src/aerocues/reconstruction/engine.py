@@ -1,4 +1,4 @@
-"""Child processes that reconstruct, one a combination, some at a time."""
+"""Child processes that reconstruct: one combination each, several at a time."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ Group = collections.deque[Combination]
 
 @dataclass(frozen=True)
 class ReconstructionLimits:
-    """What a child process may use.
+    """Limits of a child process.
 
     Parameters
     ----------
     workers : int
-        Processes at a time.
+        Number of processes.
     seconds : float
-        CPU seconds of features of one image, matches of one pair, verification, and mapping each;
-        and wall seconds that one of them may sit idle.
+        Limit of the CPU seconds of each of these: features of one image, matches of one pair,
+        verification, mapping. Also the limit of the wall seconds that one of them may be idle.
     memory_limit_mb : int
         Memory of one process.
     """
@@ -57,7 +57,7 @@ def prepare_images(
     limits: ReconstructionLimits,
     progress: Callable[[int, int], None],
 ) -> list[Prepared]:
-    """Put images into the folder of the scene, in a child process.
+    """Write images into the folder of the scene, in a child process.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def prepare_images(
             if isinstance(found, Exception):
                 raise found
             if isinstance(found, Loss):
-                raise AerocuesError(f"{image}: {found.message}; take it out of the folder")
+                raise AerocuesError(f"{image}: {found.message}; remove it from the folder")
             prepared.append(found)
             progress(len(prepared), len(images))
         child.stop(SECONDS_TO_END)
@@ -86,7 +86,7 @@ def prepare_images(
 
 
 def in_groups(combinations: Iterable[Combination]) -> list[Group]:
-    """Combinations with the same detector and descriptor together: they share their features."""
+    """Groups of combinations with the same detector and descriptor, which share features."""
     groups: dict[tuple[str, str], Group] = {}
     for each in combinations:
         groups.setdefault((each.detector, each.descriptor), collections.deque()).append(each)
@@ -95,7 +95,7 @@ def in_groups(combinations: Iterable[Combination]) -> list[Group]:
 
 @dataclass(eq=False)
 class _Lane:
-    """One process and the group whose combinations it works on, one after the other."""
+    """One process and its group of combinations, which it processes one after the other."""
 
     group: Group
     child: ChildProcess
@@ -114,8 +114,8 @@ def run_reconstructions(
     Yields
     ------
     tuple of Combination, dict, bool
-        What a reconstruction came to, whatever happened to its process; and whether it was the
-        last of its group.
+        The combination, the row of its reconstruction (even if its process died), and whether it
+        was the last of its group.
     """
     queue = collections.deque(groups)
     lanes: list[_Lane] = []

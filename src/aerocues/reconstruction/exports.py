@@ -1,4 +1,4 @@
-"""A model as files that other programs open."""
+"""Writes models in the formats of other programs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ UNDISTORTED = "undistorted"
 
 
 def export_model(model: Any, folder: Path) -> None:
-    """Write COLMAP's binary and text forms and a point cloud in PLY."""
+    """Write COLMAP's binary and text formats, and a point cloud as PLY."""
     for name in (MODEL, TEXT, UNDISTORTED):
         shutil.rmtree(folder / name, ignore_errors=True)
     binary = folder / MODEL / "0"
@@ -25,7 +25,7 @@ def export_model(model: Any, folder: Path) -> None:
 
 
 def undistort(folder: Path, images: Path) -> None:
-    """Write images without distortion and the model that goes with them, for a dense step."""
+    """Write undistorted images and their model, for dense reconstruction."""
     import pycolmap
 
     pycolmap.undistort_images(folder / UNDISTORTED, folder / MODEL / "0", images)

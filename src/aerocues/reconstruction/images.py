@@ -1,4 +1,4 @@
-"""Images as COLMAP and others read them, and the cameras that took them."""
+"""Images in the folder of models, for COLMAP and others, and their cameras."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ HALF_PIXEL = 0.5
 
 @dataclass(frozen=True)
 class Prepared:
-    """The size of an image as it is measured, and its focal length in pixels, if EXIF tells."""
+    """The size of the measured image, and its focal length in pixels if EXIF has it."""
 
     name: str
     width: int
@@ -36,12 +36,12 @@ class Prepared:
 
 
 def prepare_image(image: Image, folder: Path) -> Prepared:
-    """Put an image into a folder as it is measured, and find the focal length in its EXIF data.
+    """Write the measured image into a folder, and read the focal length from its EXIF data.
 
     Raises
     ------
     ImageError
-        If it cannot be read or written.
+        If the image cannot be read or written.
     """
     pixels = image.read()
     height, width = pixels.bgr.shape[:2]
@@ -51,7 +51,7 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
     if isinstance(source, FileSource) and _as_it_is(source):
         shutil.copyfile(source.path, target)
     elif not cv2.imwrite(str(target), pixels.bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
-        raise ImageError(f"cannot write {target}; make room or choose another folder with -o")
+        raise ImageError(f"cannot write {target}; free space or choose another folder with -o")
     focal_length = None
     if isinstance(source, FileSource):
         focal_length = _exif_focal_length(source, max(width, height))
@@ -59,7 +59,7 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
 
 
 def read_prepared(folder: Path, keys: Mapping[str, str]) -> dict[str, Prepared]:
-    """The images that a folder of models has already, as they are now."""
+    """The images that are already in the folder of models and unchanged."""
     try:
         stored = json.loads((folder / LIST).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -72,26 +72,26 @@ def read_prepared(folder: Path, keys: Mapping[str, str]) -> dict[str, Prepared]:
 
 
 def write_prepared(folder: Path, keys: Mapping[str, str], prepared: Mapping[str, Prepared]) -> None:
-    """Remember which images are there; OSError where there is no room."""
+    """Record which images are in the folder; OSError if the disk is full."""
     listed = {name: {"key": keys[name], "image": asdict(each)} for name, each in prepared.items()}
     write_whole({folder / LIST: json_content(listed)})
 
 
 def _as_it_is(source: FileSource) -> bool:
-    """Whether the file itself has the pixels that are measured."""
+    """Whether the original file has exactly the measured pixels."""
     header = read_header(source.path, str(source.path))
     shrunk = source.max_width is not None and header.size[0] > source.max_width
     return not shrunk and source.equalize == "none" and header.orientation == 1
 
 
 def _exif_focal_length(source: FileSource, longer_side: int) -> float | None:
-    """The focal length that COLMAP reads out of EXIF, at the size that is measured."""
+    """The focal length that COLMAP reads from EXIF, scaled to the measured size."""
     import pycolmap
 
     try:
         camera = pycolmap.infer_camera_from_image(str(source.path))
     except (ValueError, RuntimeError):
-        return None  # a format that COLMAP does not know has no focal length for it
+        return None  # COLMAP reads no focal length from unknown formats
     if not camera.has_prior_focal_length:
         return None
     return float(camera.mean_focal_length() * longer_side / max(camera.width, camera.height))
@@ -100,12 +100,12 @@ def _exif_focal_length(source: FileSource, longer_side: int) -> float | None:
 def cameras_of(
     dataset: Dataset, prepared: list[Prepared], protocol: ReconstructionProtocol
 ) -> tuple[CameraGroup, ...]:
-    """The cameras of a scene: one for images of the same size and focal length.
+    """The cameras of a scene: one per image size and focal length.
 
     Raises
     ------
     ReconstructionError
-        If intrinsics are to stay fixed and are not known.
+        If the intrinsics are fixed but unknown.
     """
     groups: defaultdict[tuple[Any, ...], list[str]] = defaultdict(list)
     unknown = []
@@ -122,7 +122,7 @@ def cameras_of(
         groups[(each.width, each.height, *found)].append(each.name)
     if unknown and protocol.intrinsics == "fixed":
         raise ReconstructionError(
-            f"the focal length of {len(unknown)} of {len(prepared)} images is not known "
+            f"the focal length of {len(unknown)} of {len(prepared)} images is unknown "
             f"({unknown[0]}, ...); give --focal-length PIXELS, or let the mapper estimate it with "
             "--intrinsics refine"
         )

@@ -1,4 +1,4 @@
-"""COLMAP's mappers, set alike for all combinations."""
+"""COLMAP's mappers, with the same settings for all combinations."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from aerocues.reconstruction.protocol import ReconstructionProtocol
 def map_scene(
     database: Path, images: Path, folder: Path, protocol: ReconstructionProtocol
 ) -> list[Any]:
-    """All models that the mapper makes, the largest first: by images, then by points.
+    """All models of the mapper, sorted by number of images, then points, the largest first.
 
     Parameters
     ----------
     database, images : path
     folder : path
-        For the mapper's own output; removed again.
+        Temporary folder for the output of the mapper; it is removed again.
     protocol : ReconstructionProtocol
 
     Raises
@@ -62,7 +62,7 @@ def _incremental_options(protocol: ReconstructionProtocol) -> Any:
     options.ba_refine_principal_point = False
     options.mapper.abs_pose_refine_focal_length = refine
     options.mapper.abs_pose_refine_extra_params = refine
-    # The adjustment's names have changed from images to frames between versions.
+    # Newer versions name these options after frames, older ones after images.
     ratio = settings.global_adjustment_ratio
     for name in ("ba_global_frames_ratio", "ba_global_images_ratio", "ba_global_points_ratio"):
         if hasattr(options, name):

@@ -1,4 +1,4 @@
-"""The graph of images that are linked by pairs, and the parts that it falls into."""
+"""The graph of images that are linked by pairs, and its connected components."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LISTED = 3
 
 
 def parts_of(images: Sequence[str], pairs: Iterable[tuple[str, str]]) -> list[list[str]]:
-    """Images that are linked with each other, the largest part first; each image is in one."""
+    """The connected components, the largest first; each image is in one of them."""
     number = {name: position for position, name in enumerate(images)}
     ends = np.array([[number[a], number[b]] for a, b in pairs], int).reshape(-1, 2)
     graph = coo_matrix(
@@ -31,7 +31,7 @@ def told_parts(parts: Sequence[Sequence[str]]) -> str:
     single = [part[0] for part in parts if len(part) == 1]
     told = [f"{len(part)} images ({_listed(part)})" for part in several]
     if single:
-        told.append(f"{len(single)} linked with none ({_listed(single)})")
+        told.append(f"{len(single)} without links ({_listed(single)})")
     return f"{len(parts)} parts: {', '.join(told)}"
 
 

@@ -1,4 +1,4 @@
-"""Keypoints and matches of a scene, in memory and as a file that outlives the descriptors."""
+"""Keypoints and matches of a scene, in memory and as a file that is kept after the descriptors."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class PairMatches:
     Parameters
     ----------
     indices : (M, 2) int32
-        Keypoints of the first and the second image.
+        Indices of keypoints in the first and the second image.
     distance : (M,) float32
-        Of the descriptors.
+        Distance of the descriptors.
     """
 
     indices: Int32Array
@@ -41,7 +41,7 @@ class PairMatches:
 
 @dataclass(frozen=True, eq=False)
 class MatchedScene:
-    """Keypoints by image and matches by pair, with the CPU seconds that they took."""
+    """Keypoints by image and matches by pair, with their CPU seconds."""
 
     keypoints: Mapping[str, Keypoints]
     pairs: Mapping[Names, PairMatches]
@@ -55,7 +55,7 @@ class MatchedScene:
         return first[indices[:, 0]], second[indices[:, 1]]
 
     def write(self, file: Path, key: str) -> None:
-        """Keep it under the key of what decided it; OSError where there is no room."""
+        """Store it with the key of its settings; OSError if the disk is full."""
         content = io.BytesIO()
         keypoints, matches = list(self.keypoints.values()), list(self.pairs.values())
         np.savez_compressed(
@@ -80,7 +80,7 @@ def _joined(parts: list[Any], shape: tuple[int, ...], dtype: Any) -> NDArray[Any
 
 
 def read_matched_scene(file: Path, key: str) -> MatchedScene | None:
-    """What was kept under the same key; None where there is nothing, or it is damaged."""
+    """The stored scene with the same key; None if it is missing or damaged."""
     if not file.is_file():
         return None
     try:

@@ -1,4 +1,4 @@
-"""A folder of models: one folder a combination, and what was asked for."""
+"""A folder of models: one subfolder per combination, and the settings."""
 
 from __future__ import annotations
 
@@ -33,30 +33,30 @@ class Models:
     Parameters
     ----------
     folder : path
-        As `aerocues.reconstruct` made it.
+        Folder made by `aerocues.reconstruct`.
 
     Raises
     ------
     StoreError
-        If it is no such folder.
+        If it is not a folder of models.
     """
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
         if not (self.folder / SETTINGS).is_file():
             raise StoreError(
-                f"{self.folder} is no folder of models (it has no {SETTINGS}); make one with "
+                f"{self.folder} is not a folder of models (it has no {SETTINGS}); make one with "
                 f"'aerocues reconstruct DATASET -o {self.folder}'"
             )
 
     @classmethod
     def create(cls, folder: Path) -> None:
-        """Make the folder where it is missing.
+        """Create the folder if it does not exist.
 
         Raises
         ------
         StoreError
-            If it cannot be made, is a file or holds something else.
+            If it cannot be created, is a file, or has other content.
         """
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give -o the name of a folder")
@@ -76,25 +76,25 @@ class Models:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What all models have in common, versions and machine."""
+        """Settings that all models share, versions and machine."""
         found: dict[str, Any] = json.loads((self.folder / SETTINGS).read_text(encoding="utf-8"))
         return found
 
     def path(self, combination: Combination | str) -> Path:
-        """The folder of a combination's model."""
+        """The folder of the model of a combination."""
         return self.folder / str(combination).upper()
 
     def picture(self, combination: Combination | str) -> Path:
-        """The picture of a combination's cloud."""
+        """The picture of the cloud of a combination."""
         return self.path(combination) / PICTURE
 
     def cloud(self, combination: Combination | str) -> Cloud | None:
-        """The cloud of a combination's model; None where there is no model."""
+        """The cloud of the model of a combination; None if there is no model."""
         file = self.path(combination) / CLOUD
         return read_cloud(file.read_bytes(), file) if file.is_file() else None
 
     def table(self) -> pl.DataFrame:
-        """One row a combination; columns as in `reconstruction_schema.RECONSTRUCTIONS`."""
+        """One row per combination; columns as in `reconstruction_schema.RECONSTRUCTIONS`."""
         import polars as pl
 
         if not (self.folder / TABLE).is_file():
@@ -103,7 +103,7 @@ class Models:
 
 
 def read_outcome(folder: Path) -> Row | None:
-    """The row of a finished reconstruction; None where there is none."""
+    """The row of a finished reconstruction; None if it is not finished."""
     try:
         found = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -112,7 +112,7 @@ def read_outcome(folder: Path) -> Row | None:
 
 
 def has_files(place: Path) -> bool:
-    """Whether the model and the cloud of a reconstruction are there, and the cloud is whole."""
+    """Whether the model and the cloud of a reconstruction exist and the cloud is readable."""
     try:
         read_cloud((place / CLOUD).read_bytes(), place / CLOUD)
     except (OSError, StoreError):
@@ -121,7 +121,7 @@ def has_files(place: Path) -> bool:
 
 
 def write_outcome(folder: Path, row: Row) -> None:
-    """Say that a reconstruction is finished; comes after all of its files."""
+    """Mark a reconstruction as finished; call it after all files are written."""
     folder.mkdir(parents=True, exist_ok=True)
     write_whole({folder / OUTCOME: json_content(row)})
 

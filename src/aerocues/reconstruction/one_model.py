@@ -1,4 +1,4 @@
-"""One combination from images to a judged model, in the folder of that combination."""
+"""Makes and evaluates the model of one combination, in the folder of that combination."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class ModelMaker:
     scene : Scene
     combination : Combination
     announce : callable
-        Told of each stage before it begins.
+        Called with each stage before it starts.
     """
 
     def __init__(self, scene: Scene, combination: Combination, announce: Announce) -> None:
@@ -67,7 +67,7 @@ class ModelMaker:
         self._stage = "matching"
 
     def make(self) -> Row:
-        """The row of the reconstruction, with its status, as far as it came."""
+        """The row of the reconstruction with its status; unfinished parts are unknown."""
         self._folder.mkdir(parents=True, exist_ok=True)
         self._remove_earlier()
         self._row.update(
@@ -77,7 +77,7 @@ class ModelMaker:
             outcome = self._reconstruct()
         except StageError as failure:
             outcome = Outcome(failure.status, failure.message)
-        except (RuntimeError, ValueError, KeyError, IndexError) as error:  # what COLMAP raises
+        except (RuntimeError, ValueError, KeyError, IndexError) as error:  # COLMAP's errors
             text = " ".join(str(error).split())
             outcome = Outcome("error", f"{self._stage}: {type(error).__name__}: {text}")
         times = [self._row.get(f"{stage}_seconds") for stage in _STAGES]
@@ -86,9 +86,9 @@ class ModelMaker:
         return {**self._row, "status": outcome.status, "message": outcome.message}
 
     def _remove_earlier(self) -> None:
-        """Take away what was made under other settings; matches say themselves what they are of.
+        """Remove files made under other settings, except matches, which have their own key.
 
-        The outcome first: nothing may vouch for files that are on their way out.
+        The outcome is removed first, so that it never refers to removed files.
         """
         (self._folder / OUTCOME).unlink(missing_ok=True)
         for file in (CLOUD, PICTURE, PLY):
@@ -125,7 +125,7 @@ class ModelMaker:
         return self._judge(models[0], inliers)
 
     def _matched(self) -> MatchedScene:
-        """Features and matches: those that are there already, or new ones."""
+        """Features and matches: stored ones if they are valid, else new ones."""
         file = self._folder / MATCHES
         key = self._scene.matching_key(self._combination)
         matched = read_matched_scene(file, key)
@@ -159,7 +159,7 @@ class ModelMaker:
         return verified_inliers(database, numbers), numbers
 
     def _judge(self, model: Any, inliers: dict[Names, int]) -> Outcome:
-        """Measure the largest model, write it out and say what it is worth."""
+        """Evaluate the largest model and write its files."""
         scene = self._scene
         self._announce(stage_call("judging", self._combination, "its model"))
         if scene.wanted.colours:
@@ -181,7 +181,7 @@ class ModelMaker:
             requirements,
         )
         if truth is not None and frame is None:
-            unknown = "whether it is in its place is not known: the cameras lie on a line"
+            unknown = "its position errors are unknown: the cameras lie on a line"
             outcome = Outcome(outcome.status, "; ".join(filter(None, (outcome.message, unknown))))
         self._stage = "writing the model"
         export_model(model, self._folder)

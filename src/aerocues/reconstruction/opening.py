@@ -1,4 +1,4 @@
-"""Opening a scene: pairs by GPS where images have it, else all pairs."""
+"""Opens a scene: pairs by GPS if images have it, else all pairs."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ def open_scene(
 ) -> Dataset:
     """Open a dataset to reconstruct it.
 
-    Consecutive images alone tear a flight over a grid apart: where no pairs are asked for, images
-    are matched with their neighbours by GPS, and where those are not known, with all others.
+    Consecutive pairs do not join the strips of a survey. By default images are matched with their
+    GPS neighbours, or with all other images if positions are unknown.
 
     Parameters
     ----------
     spec, pairs, max_width, equalize, sequences, subset
-        As `aerocues.open_dataset` takes them.
+        As in `aerocues.open_dataset`.
 
     Raises
     ------
@@ -53,5 +53,5 @@ def open_scene(
 
 
 def _has_choice(dataset: Dataset) -> bool:
-    """Whether pairs of the user's choice make sense: not with homographies."""
+    """Whether the user may choose pairs, which is not the case with homographies."""
     return dataset.geometry == "epipolar"

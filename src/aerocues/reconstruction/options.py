@@ -1,4 +1,4 @@
-"""What may be chosen of a reconstruction, and who is told how it goes on."""
+"""Options of a reconstruction, and the receiver of its progress."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ReconstructionObserver:
         """The images rule out some of the combinations."""
 
     def planned(self, total: int, present: int) -> None:
-        """`total` combinations are to be there, `present` of which are."""
+        """`present` of `total` combinations are already finished."""
 
     def without_reference(self, reference: Combination, reason: str) -> None:
         """The reference has no model: there are no distances between clouds."""
@@ -42,25 +42,26 @@ class ReconstructionObserver:
 
 @dataclass(frozen=True)
 class ReconstructionOptions:
-    """What may be chosen besides scene and combinations.
+    """Options besides scene and combinations.
 
     Parameters
     ----------
     preset : str or Preset
-        Of parameters of the methods; with ``thesis`` pairs need not beat chance.
+        Preset of the parameters of methods; with ``thesis`` pairs need not beat chance.
     protocol : ReconstructionProtocol
     wanted : Wanted
     reference : str or None
-        Combination to whose cloud distances are measured; the largest model by default.
+        Combination whose cloud is the reference of distances; by default the largest model.
     features : path, optional
-        Folder in which features are kept, and found if `run` or another reconstruction kept them
-        there; by default they are kept for the time of the reconstruction only.
+        Folder for features, which are reused if `run` or another reconstruction stored them there.
+        By default features are removed after the reconstruction.
     workers, memory_limit_mb : int or None
-        Processes at a time, one a core by default; memory of each, their share of 80 %.
+        Number of processes, by default one per core; memory of each, by default its share of 80 %.
     time_limit : float
-        CPU seconds of a stage.
+        Limit of the CPU seconds of a stage.
     retry_failed : bool
-        Try again what crashed, raised an error, or ran out of time or memory.
+        Retry reconstructions that crashed, raised an error, or exceeded the limits of time or
+        memory.
     """
 
     preset: str | Preset = "default"
@@ -74,7 +75,7 @@ class ReconstructionOptions:
     retry_failed: bool = False
 
     def limits(self) -> ReconstructionLimits:
-        """The limits of a process on this machine; ReconstructionError if they make no sense."""
+        """The limits of a process on this machine; ReconstructionError if they are invalid."""
         import psutil
 
         workers = usable_cores() if self.workers is None else self.workers

@@ -15,7 +15,7 @@ SIZE = (1400, 760)
 MARGIN = 40
 HEADING = 44
 BACKGROUND, INK, CAMERA, TRUE_POSITION = "#ffffff", "#333333", "#d55e00", "#0072b2"
-# Share of the points, at either end of an axis, that may lie outside the picture.
+# Share of points at each end of an axis that may lie outside the picture.
 OUTLIERS = 0.01
 FRUSTUM = 0.035
 
@@ -46,12 +46,14 @@ def picture_of(cloud: Cloud, title: str) -> bytes:
 
 
 def _axes(cloud: Cloud) -> tuple[Array, Array, Array]:
-    """Right, forward and up: of the world where that is known, else of the plane of the points."""
+    """Axes right, forward and up: those of the world if known, else of the plane of the points."""
     if cloud.unit == "m":
         return tuple(np.eye(3))  # type: ignore[return-value]
     points = cloud.points.astype(np.float64)
     centred = points - points.mean(axis=0)
-    up, _, right = np.linalg.eigh(centred.T @ centred)[1].T  # from the least to the most spread
+    up, _, right = np.linalg.eigh(centred.T @ centred)[
+        1
+    ].T  # from the smallest to the largest spread
     if (cloud.centres.mean(axis=0) - points.mean(axis=0)) @ up < 0:
         up = -up
     return right, np.cross(up, right), up

@@ -1,4 +1,4 @@
-"""What all combinations of a scene have in common when they are reconstructed."""
+"""Settings that all reconstructions of a scene share."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from aerocues.pipeline.protocol import ChanceTest, Verification
 Intrinsics = Literal["fixed", "refine"]
 Mapper = Literal["incremental", "global"]
 
-# Raised whenever the same images and methods would give other models.
+# Raise this whenever the same images and methods would give other models.
 RECONSTRUCTION_VERSION = 1
 MAX_KEYPOINTS = 8000
 
 
 @dataclass(frozen=True)
 class Requirements:
-    """What a model must be, to count as a success.
+    """Requirements for a model to count as a success.
 
     Parameters
     ----------
     registered_share : float
-        Least share of the images that the largest model holds; and of those that are in their
-        place, where that is known.
+        Minimum share of the images in the largest model; and, if positions are known, minimum share
+        of its images that are correctly placed.
     position_error_share : float
-        How far a camera in its place may be off, as a share of the extent of the flight.
+        Largest position error of a correctly placed camera, as a share of the extent of the flight.
     gps_error : float
-        Metres that it may be off at least where positions are from GPS, which errs itself.
+        With GPS positions, which have errors themselves, this error in metres is always allowed.
     """
 
     registered_share: float = 0.8
@@ -40,10 +40,10 @@ class Requirements:
 
 @dataclass(frozen=True)
 class Mapping:
-    """Settings of COLMAP; the rest are its defaults.
+    """Settings of COLMAP; all others have their defaults.
 
-    Bundle adjustment is called less often than by default: the same images and points within
-    0.3 %, in half the time.
+    Bundle adjustment runs less often than by default: half the time for the same images and 0.3 %
+    difference in points.
     """
 
     verification_trials: int = 1000
@@ -61,27 +61,27 @@ class ReconstructionProtocol:
     Parameters
     ----------
     seed : int
-        Of every stage.
+        Seed of every stage.
     max_keypoints : int
-        Strongest keypoints kept in an image; 0: all.
+        Maximum number of keypoints per image; 0: all.
     intrinsics : {"fixed", "refine"}
-        Whether focal length and distortion are those known before, or adjusted with the model.
+        Whether focal length and distortion are fixed at known values, or adjusted with the model.
         Flat scenes seen from straight above do not determine them.
     focal_length : float or None
-        Pixels, in place of what EXIF tells; above 0.
+        Pixels, in place of the value from EXIF; above 0.
     mapper : {"incremental", "global"}
     chance : ChanceTest or None
-        Pairs whose matches do not beat chance are not given to COLMAP. With thousands of
-        keypoints, images that share nothing have more than enough matches to be verified by
-        COLMAP's rules; they cost most of the time of mapping, and some pull cameras away.
+        Pairs whose matches do not beat chance are not given to COLMAP. With thousands of keypoints,
+        images without overlap have enough matches to pass COLMAP's own verification. Such pairs
+        take most of the mapping time, and some of them displace cameras.
     thresholds : mapping of str to float
-        Inlier thresholds in pixels of "DETECTOR-DESCRIPTOR", where a preset gives them: of the
-        test against chance and of COLMAP's verification.
+        Inlier thresholds in pixels of "DETECTOR-DESCRIPTOR" from a preset, for the chance test and
+        for COLMAP's verification.
 
     Raises
     ------
     ReconstructionError
-        If the focal length is none: every model would fail, each after all of its work.
+        If the focal length is invalid: every model would fail, after all of its work.
     """
 
     seed: int = 0
@@ -104,7 +104,7 @@ class ReconstructionProtocol:
             )
 
     def matching_identity(self) -> dict[str, object]:
-        """What decides features and matches."""
+        """Settings that features and matches depend on."""
         return {
             "version": RECONSTRUCTION_VERSION,
             "seed": self.seed,
@@ -112,9 +112,9 @@ class ReconstructionProtocol:
         }
 
     def identity(self) -> dict[str, object]:
-        """What decides the models of all combinations and what is said of them.
+        """Settings that the models of all combinations and their evaluation depend on.
 
-        Thresholds are of some combinations only.
+        Thresholds are not included, as they concern only some combinations.
         """
         settings = asdict(self)
         del settings["thresholds"]

@@ -1,4 +1,4 @@
-"""Figures of a model."""
+"""Quality of a model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from aerocues.results.metrics import Row
 def model_figures(model: Any) -> Row:
     """Counts, track length and errors, as COLMAP defines them.
 
-    The reprojection error is the mean over points of the mean over the point's observations.
+    The reprojection error is the mean over points of the mean error of the observations of a point.
     """
     points = list(model.points3D.values())
     errors = np.array([point.error for point in points])
@@ -37,7 +37,7 @@ def model_figures(model: Any) -> Row:
 def cloud_of(
     model: Any, dataset: Dataset, truth: TruePositions | None, frame: Similarity | None
 ) -> Cloud:
-    """Points and cameras of a model, in metres where a true frame is known."""
+    """Points and cameras of a model, in metres if a true frame is known."""
     numbers = sorted(model.points3D)
     points = [model.points3D[number] for number in numbers]
     images = registered(model)

@@ -1,4 +1,4 @@
-"""The whole reconstruction: a scene and combinations in, a folder of models out."""
+"""The complete reconstruction: from a scene and combinations to a folder of models."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def reconstruct_scene(
     Parameters
     ----------
     store : Store, optional
-        Results of the same scene, which get the figures and clouds, too.
+        Results of the same scene, in which rows and clouds are stored, too.
     """
     _check_scene(dataset)
     scene = _scene(dataset, output, options)
@@ -81,7 +81,7 @@ def reconstruct_scene(
             left = [each for each in chosen if each not in finished]
             for combination, row in _reconstruct(scene, left, options.limits(), observer):
                 finished[combination] = row
-        finally:  # an interruption loses nothing that is finished
+        finally:  # an interruption loses no finished work
             rows = {**others, **finished}
             if reference in rows and not rows[reference].get("registered_images"):
                 observer.without_reference(reference, str(rows[reference]["message"]))
@@ -134,7 +134,7 @@ def _scene(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Sc
 
 
 def _features_folder(output: Path, options: ReconstructionOptions) -> Path:
-    """Where features are kept: for this work only, unless a folder is named."""
+    """The folder of features: a temporary one, unless a folder is given."""
     if options.features is None:
         return output.absolute() / FEATURES
     return checked_folder(Path(options.features).absolute())
@@ -145,7 +145,7 @@ def _chosen(
     combinations: str | Iterable[str | Combination],
     observer: ReconstructionObserver,
 ) -> list[Combination]:
-    """The combinations in the order asked for, where each was named; else in that of the tables."""
+    """The combinations in the given order if each was named, else in the order of the tables."""
     patterns = combinations if isinstance(combinations, str) else [str(c) for c in combinations]
     chosen = select(scene.methods, patterns)
     if not isinstance(patterns, str):
@@ -157,7 +157,9 @@ def _chosen(
     ]
     if gray and needs_colour:
         chosen = [each for each in chosen if each not in needs_colour]
-        reason = f"{needs_colour[0].descriptor} needs three colour channels, and images are gray"
+        reason = (
+            f"{needs_colour[0].descriptor} needs three colour channels, but the images are gray"
+        )
         if not chosen:
             raise ReconstructionError(f"{reason}; choose other combinations")
         observer.left_out(needs_colour, reason)
@@ -167,9 +169,11 @@ def _chosen(
 def _with_cameras(
     scene: Scene, limits: ReconstructionLimits, observer: ReconstructionObserver
 ) -> Scene:
-    """The scene with its images in the folder, those that were not there yet, and their cameras."""
+    """The scene with its cameras; images that are not in the folder yet are written there."""
     known = read_prepared(scene.folder, scene.image_keys)
-    write_prepared(scene.folder, scene.image_keys, known)  # vouches for nothing that is overwritten
+    write_prepared(
+        scene.folder, scene.image_keys, known
+    )  # removed first, as its images are overwritten
     left = [image.name for image in scene.dataset.images if image.name not in known]
     for each in prepare_images(scene, left, limits, observer.preparing):
         known[each.name] = each
@@ -202,7 +206,7 @@ def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
 def _finished(
     scene: Scene, chosen: Iterable[Combination], *, retry_failed: bool, time_limit: float
 ) -> dict[Combination, Row]:
-    """Rows of the reconstructions that are there and still hold."""
+    """Rows of finished reconstructions that are still valid."""
     finished = {}
     for combination in chosen:
         row = read_outcome(scene.place(combination))
@@ -211,7 +215,7 @@ def _finished(
         if retry_failed and row["status"] in RETRIED:
             continue
         if row["status"] == "timeout" and row.get("time_limit", 0.0) < time_limit:
-            continue  # it may end within the larger limit
+            continue  # it may succeed with the larger limit
         if row.get("registered_images") and not has_files(scene.place(combination)):
             continue
         finished[combination] = row
@@ -219,7 +223,7 @@ def _finished(
 
 
 def _others(scene: Scene, chosen: Sequence[Combination]) -> dict[Combination, Row]:
-    """Rows of the other models in the folder that were made under the same conditions."""
+    """Rows of other models in the folder that were made under the same settings."""
     others = {}
     for place in sorted(scene.folder.glob("*-*-*-*/")):
         row = read_outcome(place)
@@ -238,7 +242,7 @@ def _reconstruct(
     observer: ReconstructionObserver,
 ) -> Iterable[tuple[Combination, Row]]:
     running = run_reconstructions(scene, in_groups(combinations), limits, observer.working)
-    with contextlib.closing(running):  # an interruption ends the processes here and now
+    with contextlib.closing(running):  # an interruption ends the processes immediately
         for combination, figures, last in running:
             when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}
             row = {**_identity(scene, combination), **figures, **when}
@@ -278,7 +282,7 @@ def _write_rows(
     reference: Combination | None,
     store: Store | None,
 ) -> None:
-    """Measure distances between clouds, and write the table here and into the results."""
+    """Measure distances between clouds, and write the table here and to the results."""
     clouds = Models(scene.folder)
     rows, measured = with_distances(finished, clouds.cloud, reference)
     table = write_table(scene.folder, rows)
@@ -294,12 +298,12 @@ def _write_rows(
 
 
 def open_results(folder: str | Path, dataset: Dataset) -> Store:
-    """The results that are to get the figures; StoreError where they are of something else."""
+    """The results in which to store the rows; StoreError if they have another dataset."""
     store = Store.open(Path(folder))
     names = store.plan()["dataset"].unique().to_list()
     if dataset.name not in names:
         raise StoreError(
-            f"{folder} holds results of {', '.join(sorted(names))} and not of {dataset.name}; "
+            f"{folder} has results of {', '.join(sorted(names))}, not of {dataset.name}; "
             "reconstruct the images that they were measured on"
         )
     return store

@@ -1,4 +1,4 @@
-"""Distances of all clouds to that of the reference."""
+"""Distances of all clouds to the reference cloud."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def with_distances(
     rows : mapping of Combination to Row
     cloud_of : callable
     reference : Combination, optional
-        By default the model that succeeded with most images, then most points.
+        By default the successful model with the most images, then the most points.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def _distances(
 ) -> CloudDistances | None:
     if reference is None:
         return None
-    if combination == reference:  # exactly, whatever the rounding of an alignment
+    if combination == reference:  # exactly, regardless of rounding in an alignment
         nothing = np.zeros(len(clouds[reference].points))
         return CloudDistances(nothing, nothing)
     return cloud_distances(clouds[combination], clouds[reference])

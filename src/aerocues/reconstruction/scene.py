@@ -1,4 +1,4 @@
-"""A scene to be reconstructed, its work, and the keys of both."""
+"""A scene to reconstruct, the wanted outputs, and their keys."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class CameraGroup:
     model : str
         COLMAP's name of the camera model.
     parameters : tuple of float
-        In COLMAP's order and convention (the centre of the top-left pixel is (0.5, 0.5)); empty
-        where nothing is known, which COLMAP then guesses.
+        In COLMAP's order and convention (the centre of the top-left pixel is (0.5, 0.5)). Empty if
+        nothing is known; COLMAP then makes a guess.
     source : str
-        Where the focal length is from.
+        Source of the focal length.
     names : tuple of str
     """
 
@@ -42,7 +42,7 @@ class CameraGroup:
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is to be made besides the model itself."""
+    """Outputs besides the model itself."""
 
     colours: bool = True
     undistorted: bool = False
@@ -50,7 +50,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Scene:
-    """What all reconstructions of a run share; sent to each process once.
+    """The context that all reconstructions of a run share; it is sent to each process once.
 
     ``image_keys`` are hashes of the images' pixels by name. ``folder`` holds the models,
     ``features`` the features of the images.
@@ -70,15 +70,15 @@ class Scene:
 
     @property
     def images(self) -> Path:
-        """Where the images are as they were read, for COLMAP and others."""
+        """The folder of the measured images, for COLMAP and others."""
         return self.folder / IMAGES
 
     def place(self, combination: Combination) -> Path:
-        """The folder of a combination's model."""
+        """The folder of the model of a combination."""
         return self.folder / str(combination)
 
     def measurement(self) -> MeasurementProtocol:
-        """How pairs of images are measured under the same seed, limit and thresholds."""
+        """The protocol of measurements with the same seed, limit and thresholds."""
         protocol = self.protocol
         return MeasurementProtocol(
             seed=protocol.seed,
@@ -89,13 +89,13 @@ class Scene:
         )
 
     def threshold(self, combination: Combination) -> float | None:
-        """The inlier threshold that the preset gives a combination, in pixels; None: the usual."""
+        """The inlier threshold of a combination from the preset, in pixels; None: the default."""
         measurement = self.measurement()
         own = measurement.threshold(combination)
         return None if own == measurement.verification.threshold else own
 
     def matching_key(self, combination: Combination) -> str:
-        """Names the matches of all pairs."""
+        """Key of the matches of all pairs."""
         return content_hash(
             [
                 self._pairs(),
@@ -107,7 +107,7 @@ class Scene:
         )
 
     def settings_key(self) -> str:
-        """Names what all combinations have in common."""
+        """Key of the settings that all combinations share."""
         return content_hash(
             [
                 self._pairs(),
@@ -125,7 +125,7 @@ class Scene:
         )
 
     def row_key(self, combination: Combination) -> str:
-        """Names a model and the files that are made of it."""
+        """Key of a model and its files."""
         content = [self.settings_key(), self.matching_key(combination), asdict(self.wanted)]
         threshold = self.threshold(combination)
         return content_hash(content if threshold is None else [*content, threshold])

@@ -1,4 +1,4 @@
-"""What is known to be true of a scene, and how a model is brought into its frame."""
+"""The ground truth of a scene, and the alignment of models with it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TruePositions:
-    """Where cameras were.
+    """True camera positions.
 
     Parameters
     ----------
@@ -41,24 +41,24 @@ class TruePositions:
 
     @property
     def extent(self) -> float:
-        """Diagonal of the box around all of them, in metres."""
+        """Diagonal of their bounding box in metres."""
         return extent(np.array(list(self.by_name.values())))
 
     def tolerance(self, requirements: Requirements) -> float:
-        """Metres within which a camera counts as in its place."""
+        """Largest position error, in metres, of a correctly placed camera."""
         share = requirements.position_error_share * self.extent
         return max(share, requirements.gps_error) if self.source == "gps" else share
 
 
 def true_positions(dataset: Dataset) -> TruePositions | None:
-    """Known poses, else GPS; None where fewer than three images have a position."""
+    """Known poses, else GPS; None if fewer than three images have a position."""
     poses = {image.name: image.truth.centre for image in dataset.images if image.truth}
     if len(poses) >= 3:
         return TruePositions("poses", poses)
     located = [image for image in dataset.images if image.gps is not None]
     if len(located) < 3:
         return None
-    # An altitude that some images lack would count as that of the first.
+    # If some images have no altitude, it would be taken from the first image.
     positions = east_north_up([image.gps for image in located if image.gps])
     return TruePositions(
         "gps", {image.name: each for image, each in zip(located, positions, strict=True)}
@@ -66,7 +66,7 @@ def true_positions(dataset: Dataset) -> TruePositions | None:
 
 
 def centres_of(model: Any) -> dict[str, Array]:
-    """Centres of the registered cameras in the model's frame, by name of the image."""
+    """Centres of the registered cameras in the frame of the model, by image name."""
     return {
         str(image.name): np.asarray(image.projection_center(), np.float64)
         for image in registered(model)
@@ -76,9 +76,9 @@ def centres_of(model: Any) -> dict[str, Array]:
 def to_true_frame(
     model: Any, truth: TruePositions | None, requirements: Requirements
 ) -> Similarity | None:
-    """From the model's frame to metres; None where nothing is known or it is not determined.
+    """Similarity from the frame of the model to metres; None if unknown or not determined.
 
-    The frame in which most cameras are in their place: one that is far off bends nothing.
+    It places most cameras correctly, so a single outlier has no influence.
     """
     if truth is None:
         return None
@@ -92,7 +92,7 @@ def to_true_frame(
 
 
 def position_errors(model: Any, truth: TruePositions, frame: Similarity) -> dict[str, float]:
-    """Metres between each registered camera and where it was, by name of the image."""
+    """Position error of each registered camera in metres, by image name."""
     return {
         name: float(np.linalg.norm(frame.apply(centre) - truth.by_name[name]))
         for name, centre in centres_of(model).items()
@@ -107,9 +107,9 @@ def compare_with_truth(
     frame: Similarity | None,
     requirements: Requirements,
 ) -> Row:
-    """Errors of positions, rotations and surface, as far as the truth is known.
+    """Errors of positions, rotations and surface, where the truth is known.
 
-    The extent is that of all true positions, also of images that the model lacks.
+    The extent includes the true positions of images that are not in the model.
     """
     if truth is None or frame is None:
         return {}
@@ -137,9 +137,9 @@ def _rotation_error(model: Any, views: dict[str, TrueView], frame: Similarity) -
 
 
 def _surface_error(model: Any, views: dict[str, TrueView], frame: Similarity) -> float | None:
-    """Median over points of the median over their images of the error in depth.
+    """Median over points of the median depth error over their images.
 
-    The point is seen through the true camera: its depth there against that of the surface.
+    The depth of the point in the true camera is compared with the depth of the surface.
     """
     errors: dict[int, list[float]] = {}
     for image in registered(model):

@@ -1,4 +1,4 @@
-"""Which pairs of images are linked: the test against chance, then COLMAP's verification."""
+"""Links between pairs of images: the chance test, then COLMAP's verification."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aerocues.reconstruction.scene import Scene
 
 
 def linked_pairs(matched: MatchedScene, scene: Scene, combination: Combination) -> list[Names]:
-    """The pairs whose matches beat chance; without a chance test, all with enough matches."""
+    """The pairs whose matches beat chance; without a chance test, all pairs with enough matches."""
     least = scene.protocol.verification.minimum_matches
     enough = [names for names, matches in matched.pairs.items() if len(matches) >= least]
     if scene.protocol.chance is None:

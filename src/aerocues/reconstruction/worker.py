@@ -1,7 +1,7 @@
 """The process that reconstructs: ``python -m aerocues.reconstruction.worker``.
 
-It receives a scene and then either images to prepare or one combination, and sends back what it
-found. COLMAP can abort its process: nothing but this work is lost with it.
+It receives a scene and then either images to prepare or one combination, and sends back the result.
+COLMAP can abort its process; then only this work is lost.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from aerocues.processes.heartbeat import Heartbeat
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
-    """Do one piece of work after the other until the parent closes the pipe."""
+    """Process one task after the other until the parent closes the pipe."""
     from aerocues.errors import AerocuesError
     from aerocues.reconstruction.colmap import quiet
     from aerocues.reconstruction.images import prepare_image
