@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aerocues.cli.reconstruction_progress import Reporter, told
+from aerocues.cli.reconstruction_progress import Reporter, summary
 from aerocues.methods.combination import Combination
 
 METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
@@ -19,12 +19,12 @@ MADE = {
 
 def test_a_model_in_one_line() -> None:
     made = {**METHODS, **MADE, "status": "incomplete", "message": "the model holds ..."}
-    assert told(made) == "incomplete: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m"
+    assert summary(made) == "incomplete: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m"
     # The reason stands below the table at the end.
-    assert told({"status": "no_features", "message": "2 of 3 images have no keypoints"}) == (
+    assert summary({"status": "no_features", "message": "2 of 3 images have no keypoints"}) == (
         "no_features"
     )
-    assert told({"status": "no_model", "message": None}) == "no_model"
+    assert summary({"status": "no_model", "message": None}) == "no_model"
 
 
 def test_plain_lines_count_what_is_there(capsys: pytest.CaptureFixture[str]) -> None:
@@ -36,6 +36,6 @@ def test_plain_lines_count_what_is_there(capsys: pytest.CaptureFixture[str]) -> 
     reporter.finished({**METHODS, **MADE, "status": "ok"})
     assert capsys.readouterr().err.splitlines() == [
         "left out: 1 combination, because images are gray",
-        "1 of 3 models are there already",
+        "1 of 3 models already exist",
         "2 of 3  ORB-ORB-HAM-BF  ok: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m",
     ]

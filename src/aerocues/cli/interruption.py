@@ -1,4 +1,4 @@
-"""Ending a run early: Ctrl-C, and the signals that ask a process to end."""
+"""Interrupting a run: Ctrl-C, and the signals that terminate a process."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import FrameType
 
 
 class Interrupted(KeyboardInterrupt):
-    """A signal asked this process to end."""
+    """A signal that terminates this process."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -25,8 +25,8 @@ def _raise(number: int, frame: FrameType | None) -> None:
 def interruptible() -> Iterator[None]:
     """Raise `Interrupted` on SIGINT, SIGTERM and SIGHUP while the block runs.
 
-    A signal that was ignored when the program was started (`nohup`) stays ignored; SIGINT too is
-    ignored in what a shell script starts in the background.
+    A signal that was ignored at program start (`nohup`) stays ignored; so does SIGINT in background
+    jobs of shell scripts.
     """
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may set handlers

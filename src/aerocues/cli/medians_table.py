@@ -1,4 +1,4 @@
-"""Medians of each combination, as a table that fits 100 columns."""
+"""Medians of each combination, as a table of 100 columns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STAGES = ("detect", "describe", "match", "verify")
 
 
 def print_medians(table: pl.DataFrame, top: int) -> None:
-    """Print the `top` with the highest inlier ratio, of each dataset in a table of results."""
+    """Print the `top` combinations with the highest inlier ratio, for each dataset."""
     for (dataset,), rows in table.group_by("dataset", maintain_order=True):
         _print_dataset(str(dataset), rows, top)
 
@@ -54,7 +54,7 @@ def _print_dataset(dataset: str, rows: pl.DataFrame, top: int) -> None:
     console.print(Text(title, style="bold"))
     print_table(console, output)
     note = (
-        "Medians over all pairs. A pair without success counts as 0; its times count where known. "
-        "'aerocues score' ranks by all criteria together."
+        "Medians over all pairs. A failed pair counts as 0; its times count if known. "
+        "'aerocues score' ranks by all criteria."
     )
     console.print(Text(note, style="dim"))

@@ -1,4 +1,4 @@
-"""Models as a table that fits 100 columns: the best first, then what failed and why."""
+"""Models as a table of 100 columns, the best first, and the reasons of failures."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ INDENT = "  "
 
 
 def ordered(table: pl.DataFrame) -> pl.DataFrame:
-    """What succeeded first, then by images, then by points.
+    """Successful models first, then by images, then by points.
 
-    Never by reprojection error: broken models have the lowest.
+    Not by reprojection error: broken models have the lowest.
     """
     import polars as pl
 
@@ -76,12 +76,12 @@ def _number(value: float | None, form: str) -> str:
 
 
 def _notes(table: pl.DataFrame) -> list[str]:
-    """Why models failed or are not whole, and to what distances are."""
+    """Why models failed or are incomplete, and the reference of distances."""
     import polars as pl
 
     lines = []
     if table["status"].is_in(["ok"]).sum() == 0:
-        lines.append("no combination reconstructs the scene as it was flown")
+        lines.append("no combination reconstructs the flight correctly")
     told = table.filter((pl.col("status") != "ok") | pl.col("message").is_not_null())
     for row in told.iter_rows(named=True):
         name = name_in_row(row)
@@ -89,5 +89,5 @@ def _notes(table: pl.DataFrame) -> list[str]:
         lines += textwrap.wrap(line, 98, subsequent_indent=INDENT)
     references = table["reference"].drop_nulls().unique().to_list()
     if references:
-        lines.append(f"distances between clouds, in the table, are to {references[0]}")
+        lines.append(f"cloud distances in the table are to {references[0]}")
     return ["", *lines] if lines else []

@@ -1,4 +1,4 @@
-"""What to type after a recommendation, with the options that it was asked for with."""
+"""Commands to run after a recommendation, with the options of the recommendation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FEW = 3
 
 @dataclass(frozen=True)
 class AsMeasured:
-    """How images were opened and measured, as the options of the command line tell.
+    """How images were opened and measured, as options of the command line.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class AsMeasured:
     pairs, subset : str or None
     equalize : str
     max_width : int
-        0 where the images are as they were.
+        0 for the full size.
     preset : str
     max_keypoints : int
         0 for all.
@@ -64,7 +64,7 @@ class AsMeasured:
 
 
 def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
-    """Commands that go on from a recommendation; a model only where images may have depth."""
+    """Commands that continue from a recommendation; models only for scenes with depth."""
     few = ",".join(found.ranked["combination"].head(FEW))
     commands = [
         ["run", *measured.words(0), "-o", "results", "--combinations", few],
@@ -77,6 +77,6 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
 
 
 def _one_scene(found: Recommendation) -> list[str]:
-    """A model is of one scene: the first, where there are several."""
+    """Options for one scene: the first if there are several."""
     scenes = list(dict.fromkeys(pair.sequence for pair in found.dataset.pairs))
     return ["--sequences", scenes[0]] if len(scenes) > 1 else []

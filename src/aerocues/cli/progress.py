@@ -1,4 +1,4 @@
-"""How a run goes on: the figures behind both displays, and plain lines for files and pipes."""
+"""Progress of a run: the figures for both displays, and plain lines for files and pipes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def waiting(activity: Activity) -> str:
 
 
 def left_out(plan: Plan) -> list[str]:
-    """What the images rule out: one line a reason."""
+    """Combinations that the images rule out: one line per reason."""
     by_reason: dict[str, list[Exclusion]] = {}
     for exclusion in plan.exclusions:
         by_reason.setdefault(exclusion.reason, []).append(exclusion)
@@ -47,17 +47,16 @@ def left_out(plan: Plan) -> list[str]:
 
 
 def told_aside(rows: int) -> str:
-    """What becomes of rows that other settings measured."""
+    """The message about rows of other settings."""
     return (
-        f"{count(rows, 'row')} of other images or settings in this folder stay there, but count "
-        "no longer; the command that measured them brings them back (give -o another folder to "
-        "keep both)"
+        f"{count(rows, 'row')} of other images or settings are kept but ignored; rerun the command "
+        "that measured them to use them again (give -o another folder to use both)"
     )
 
 
 @dataclass
 class Tally(Observer):
-    """What has been done so far in a pass; `clock` gives seconds."""
+    """The progress of a pass; `clock` returns seconds."""
 
     clock: Callable[[], float] = time.monotonic
     plan: Plan | None = None
@@ -96,7 +95,7 @@ class Tally(Observer):
 
     @property
     def rows_measured_in_all(self) -> int:
-        """Rows that all passes so far have measured; a timed one counts once more."""
+        """Rows measured by all passes; timed rows count twice."""
         return self._rows_before + self.rows_measured
 
     def stored(self) -> str:
@@ -131,7 +130,7 @@ class Tally(Observer):
 
     @property
     def share(self) -> float:
-        """Share of the rows that are there, from 0 to 1."""
+        """Share of the planned rows that exist, from 0 to 1."""
         return self.rows_stored / self.rows_planned if self.rows_planned else 1.0
 
     @property
@@ -140,7 +139,7 @@ class Tally(Observer):
         return self.clock() - self._began
 
     def seconds_left(self) -> float | None:
-        """Seconds to go, by the cost of what is done and left; None as long as nothing is done."""
+        """Estimated seconds left, by cost; None until something is done."""
         if not self._cost_done:
             return None
         pace = (self._latest - self._began) / self._cost_done
@@ -157,14 +156,14 @@ class Tally(Observer):
         return f"{self.rows_stored:,} of {self.rows_planned:,} {rows} ({share}){ending}"
 
     def outcomes(self) -> str:
-        """``ok 1,100, chance 80, crashed 20``: of what this run measured, ok first."""
+        """``ok 1,100, chance 80, crashed 20``: statuses of this run, ok first."""
         ordered = sorted(self.statuses.items(), key=lambda item: (item[0] != "ok", -item[1]))
         return ", ".join(f"{status} {number:,}" for status, number in ordered)
 
 
 @dataclass
 class PlainLines(Tally):
-    """One line now and then on standard error."""
+    """Occasional lines on standard error."""
 
     _line_time: float = 0.0
     _line_share: float = 0.0

@@ -1,4 +1,4 @@
-"""How a race goes on, on standard error: a status line on a terminal, lines elsewhere."""
+"""Progress of a race on standard error: a status line on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ SECONDS_BETWEEN_LINES = 15.0
 
 
 class RaceLines(Follower):
-    """Says what matters, one line at a time."""
+    """Writes a line for each important event."""
 
     def __init__(self, budget: float) -> None:
         self._budget = budget
         self._said = float("-inf")
 
     def looking(self, pairs: int) -> None:
-        self._say(f"looking which of {count(pairs, 'pair')} show the same things")
+        self._say(f"testing which of {count(pairs, 'pair')} overlap")
 
     def racing(self, combinations: int, pairs: int) -> None:
         self._say(f"{count(combinations, 'combination')} race on {count(pairs, 'pair')}")
 
     def round(self, finished: Round) -> None:
         if time.monotonic() - self._said >= SECONDS_BETWEEN_LINES:
-            self._say(self._told(finished))
+            self._say(self._state(finished))
 
-    def _told(self, finished: Round) -> str:
+    def _state(self, finished: Round) -> str:
         return (
             f"{spoken_seconds(finished.spent)} of {spoken_seconds(self._budget)}: "
             f"{count(finished.measured, 'measurement')}, {finished.leader} leads "
-            f"({likelihood(finished.probability)}), {finished.contenders} may still be among the "
+            f"({likelihood(finished.probability)}), {finished.contenders} can still be among the "
             "best"
         )
 
@@ -52,32 +52,32 @@ class RaceLines(Follower):
 
 
 class RaceStatus(RaceLines):
-    """Keeps one line up to date."""
+    """Updates a single line."""
 
     def __init__(self, budget: float, status: Status) -> None:
         super().__init__(budget)
         self._status = status
-        self._standing = ""
+        self._line = ""
         self._drawn = float("-inf")
 
     def round(self, finished: Round) -> None:
-        self._say(self._told(finished))
+        self._say(self._state(finished))
 
     def working(self, activities: Sequence[Activity]) -> None:
         if time.monotonic() - self._drawn < 1.0:
             return
         self._drawn = time.monotonic()
         calls = "; ".join(str(each.call) for each in activities if each.call)
-        self._status.update(f"{self._standing}  [dim]{calls}[/dim]")
+        self._status.update(f"{self._line}  [dim]{calls}[/dim]")
 
     def _say(self, line: str) -> None:
-        self._standing = line
+        self._line = line
         self._status.update(line)
 
 
 @contextlib.contextmanager
 def follow(budget: float) -> Iterator[Follower]:
-    """What suits standard error."""
+    """The display for standard error."""
     if not sys.stderr.isatty():
         yield RaceLines(budget)
         return

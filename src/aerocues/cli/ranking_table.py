@@ -1,4 +1,4 @@
-"""A ranking by CUES, as a table that fits 100 columns and as JSON."""
+"""A ranking by CUES, as a table of 100 columns and as JSON."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SHOWN = 3
 WIDE = 96
 RANK_WIDTH = 4
-# What of the criteria is shown, the first ones that were chosen; and under which heading.
+# Criteria that the table may show, in order of priority, and their headings.
 HEADINGS: dict[str, str] = {
     "precision_beyond_chance": "inlier\nratio*",
     "precision": "inlier\nratio",
@@ -40,7 +40,7 @@ HEADINGS: dict[str, str] = {
 
 
 def facts(ranking: Ranking, measured: MeasuredTable) -> dict[str, Any]:
-    """The whole ranking as JSON has it."""
+    """The whole ranking for JSON."""
     weights = ranking.weights().to_dicts()
     return {
         "ranking": ranking.frame("combination").to_dicts(),
@@ -57,7 +57,7 @@ def facts(ranking: Ranking, measured: MeasuredTable) -> dict[str, Any]:
 
 
 def print_scores(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
-    """Print the best `top`, the weights of the criteria and how both came about."""
+    """Print the best `top`, the weights of the criteria and the settings."""
     from rich.text import Text
 
     print_best(ranking, measured, top)
@@ -69,7 +69,7 @@ def print_scores(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
 
 
 def print_best(ranking: Ranking, measured: MeasuredTable, top: int) -> None:
-    """Print the best `top` and what may be said of them."""
+    """Print the best `top`, with notes."""
     from rich.text import Text
 
     console = standard_output()
@@ -113,7 +113,7 @@ def _best(ranking: Ranking, measured: MeasuredTable, top: int) -> Table:
 
 
 def _shown(criteria: Sequence[str], *, timed: bool) -> list[str]:
-    """Criteria for which there is room, besides the seconds."""
+    """Criteria that fit into the table beside the seconds."""
     room = (SHOWN if standard_output().width >= WIDE else 1) - timed
     known = [name for name in HEADINGS if name in criteria]
     return (known or list(criteria))[:room]

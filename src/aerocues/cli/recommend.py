@@ -177,9 +177,9 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
     console.print()
     print_table(console, ranking(found, top))
     if found.ranked["excess_inliers"].is_not_null().any():
-        console.print("* beyond those that the same matches give when shuffled; medians.")
+        console.print("* minus the inliers of the same matches, shuffled; medians.")
     console.print(
-        "Scores are what is expected of a full measurement; brute force is timed on a part."
+        "Scores are expected values of a full measurement; brute force is timed on a sample."
     )
 
 

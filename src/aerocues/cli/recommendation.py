@@ -17,26 +17,26 @@ if TYPE_CHECKING:
 
 WIDTH = 100
 PROBABLE = 0.5
-# Those that are named as possible winners have so much of the probability together.
+# The named possible winners have this probability together.
 TOGETHER = 0.9
 MOST_NAMED = 8
 GOOD = 0.9
-"""Share of the best score from which on a combination counts as good."""
+"""Share of the best score at which a combination counts as good."""
 FASTER = 2.0
 ENDS = {
-    "budget": "the budget is spent",
-    "sure": "sure enough",
-    "measured": "all that may win are measured on all pairs",
+    "budget": "the budget was spent",
+    "sure": "the probability is high enough",
+    "measured": "all possible winners are measured on all pairs",
 }
 
 
 def answer(found: Recommendation) -> str:
-    """What to take, how sure that is, why, and what it costs."""
+    """The best combination, its probability, the reasons and the cost."""
     best = found.ranked.row(0, named=True)
     parts = [
         f"Take {found.best}.",
         "",
-        _paragraph(_how_sure(found, best)),
+        _paragraph(_certainty(found, best)),
         "",
         *_labelled("why", _why(found, best)),
         *_labelled("costs", _costs(found, best)),
@@ -51,7 +51,7 @@ def _paragraph(text: str) -> str:
 
 
 def _labelled(label: str, sentences: list[str]) -> list[str]:
-    """Sentences below each other, with a label before the first."""
+    """Sentences on lines of their own, with a label before the first."""
     lines = []
     for number, sentence in enumerate(sentences):
         begin = f"{label if not number else '':9}"
@@ -68,7 +68,7 @@ def _labelled(label: str, sentences: list[str]) -> list[str]:
     return lines
 
 
-def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
+def _certainty(found: Recommendation, best: dict[str, Any]) -> str:
     outcome, chance = found.outcome, best["probability"]
     measured = int(outcome.known.sum())
     spent = spoken_seconds(outcome.rounds[-1].spent)
@@ -78,11 +78,11 @@ def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
     )
     told = f"of {found.combinations} for {found.objective.title} on these pairs"
     if chance >= PROBABLE:
-        first = f"With a probability of {likelihood(chance)} it is the best {told}"
+        first = f"It is the best {told} with a probability of {likelihood(chance)}"
     else:
         first = (
-            f"Its expected score is the highest {told}, though it is the best with a probability "
-            f"of {likelihood(chance)} only"
+            f"It has the highest expected score {told}, but the probability that it is the best is "
+            f"only {likelihood(chance)}"
         )
     names = possible_winners(found.ranked)
     others = [name for name in names if name != found.best]
@@ -90,11 +90,11 @@ def _how_sure(found: Recommendation, best: dict[str, Any]) -> str:
         return f"{first}: {basis}."
     named = ", ".join(others[:MOST_NAMED])
     more = f" and {len(others) - MOST_NAMED} more" if len(others) > MOST_NAMED else ""
-    return f"{first}: {basis}. It may as well be {named}{more}."
+    return f"{first}: {basis}. {named}{more} could equally be the best."
 
 
 def possible_winners(ranked: pl.DataFrame) -> list[str]:
-    """The fewest combinations that together are the best with a probability of 90 %."""
+    """The fewest combinations that include the best with a probability of 90 %."""
     likely = ranked.sort("probability", "score", descending=True)
     reached = likely["probability"].cum_sum().to_list()
     number = sum(total < TOGETHER for total in reached) + 1
@@ -113,11 +113,11 @@ def _why(found: Recommendation, best: dict[str, Any]) -> list[str]:
     beyond = "precision_beyond_chance" if best["excess_inliers"] is not None else "precision"
     inliers = "excess_inliers" if best["excess_inliers"] is not None else "inliers"
     what = " beyond chance" if inliers == "excess_inliers" else ""
-    number, ratio = f"{best[inliers]:,.0f} inliers{what} a pair", f"{best[beyond]:.3f}"
+    number, ratio = f"{best[inliers]:,.0f} inliers{what} per pair", f"{best[beyond]:.3f}"
     if others == 1:
         number += "; no other combination succeeded"
     else:
-        number += f"; the median of the {others} combinations that succeeded is "
+        number += f"; the median of the {others} successful combinations is "
         number += f"{median(inliers):,.0f}"
         ratio += f" ({median(beyond):.3f})"
     return [
@@ -130,14 +130,14 @@ def _why(found: Recommendation, best: dict[str, Any]) -> list[str]:
 def _costs(found: Recommendation, best: dict[str, Any]) -> list[str]:
     image = best["detect_seconds"] + best["describe_seconds"]
     return [
-        f"an image {image:.2f} s (detect {best['detect_seconds']:.2f}, describe "
-        f"{best['describe_seconds']:.2f}), each pair {best['match_seconds']:.2f} s to match and "
+        f"{image:.2f} s per image (detect {best['detect_seconds']:.2f}, describe "
+        f"{best['describe_seconds']:.2f}), and per pair {best['match_seconds']:.2f} s to match and "
         f"{best['verify_seconds']:.3f} s to verify, on one core of {found.machine}",
     ]
 
 
 def _faster(found: Recommendation, best: dict[str, Any]) -> list[str]:
-    """The fastest of those that are nearly as good, where it is much faster."""
+    """The fastest combination that is almost as good, if it is much faster."""
     good = found.ranked.filter(found.ranked["score"] >= GOOD * best["score"])
     fastest = good.sort("total_seconds", "combination").row(0, named=True)
     if fastest["total_seconds"] * FASTER > best["total_seconds"]:
@@ -155,24 +155,21 @@ def _notes(found: Recommendation) -> list[str]:
     notes = []
     if found.seen.others:
         notes.append(
-            f"{count(len(found.seen.others), 'pair')} left out: no model better than chance was "
-            "found there, the images may not overlap"
+            f"{count(len(found.seen.others), 'pair')} left out: no model beats chance there, the "
+            "images may not overlap"
         )
     stood = len(found.seen.overlapping) + len(found.seen.others)
     if stood < found.candidates:
-        why = "; a larger --budget looks at more" if found.seen.unseen else ""
-        stand = "stands" if stood == 1 else "stand"
-        notes.append(
-            f"{count(stood, 'pair')}, spread evenly, {stand} for all {found.candidates}{why}"
-        )
+        why = "; a larger --budget tests more" if found.seen.unseen else ""
+        notes.append(f"{count(stood, 'pair')}, evenly spread, of {found.candidates} were used{why}")
     if len(found.seen.overlapping) < 5:
         more = "" if found.seen.unseen else "; give more images that overlap"
-        notes.append(f"fewer than 5 pairs tell little of others{more}")
+        notes.append(f"fewer than 5 pairs say little about other pairs{more}")
     return notes
 
 
 def ranking(found: Recommendation, top: int) -> Table:
-    """The best by expected score."""
+    """The best combinations by expected score."""
     headings = ("score", "best with", "pairs ok", "inlier ratio*", "inliers*", "seconds a pair")
     table = plain_table("rank", "combination", *headings, numbers=len(headings))
     chance_tested = found.ranked["excess_inliers"].is_not_null().any()
@@ -194,7 +191,7 @@ def ranking(found: Recommendation, top: int) -> Table:
 
 
 def story(outcome: RaceOutcome) -> Table:
-    """The race, a line a round."""
+    """The race, one line per round."""
     headings = ("seconds", "measured", "in the race", "chance")
     table = plain_table("leader", *headings, numbers=len(headings))
     for each in outcome.rounds:

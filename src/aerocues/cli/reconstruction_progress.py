@@ -1,4 +1,4 @@
-"""How a reconstruction goes on: a line for each model, and on a terminal what is being done."""
+"""Progress of reconstructions: a line per model, and the current work on a terminal."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LONGEST_SILENCE = 60.0
 
 @dataclass
 class Reporter(ReconstructionObserver):
-    """Tells on standard error; with a `status`, shows there what is being done."""
+    """Reports on standard error; a `status` shows the current work."""
 
     status: Status | None = None
     total: int = 0
@@ -45,7 +45,7 @@ class Reporter(ReconstructionObserver):
         self.total, self.done = total, present
         self._began = self._drawn = time.monotonic()
         if present:
-            self._say(f"{present} of {total} models are there already")
+            self._say(f"{present} of {total} models already exist")
 
     def without_reference(self, reference: Combination, reason: str) -> None:
         self._say(f"no distances between clouds: {reference} has no model ({reason})")
@@ -64,7 +64,7 @@ class Reporter(ReconstructionObserver):
         self.done += 1
         self._drawn = time.monotonic()
         name = name_in_row(row)
-        self._say(f"{self.done} of {self.total}  {name}  {told(row)}")
+        self._say(f"{self.done} of {self.total}  {name}  {summary(row)}")
 
     def _say(self, line: str) -> None:
         if self.status:
@@ -74,10 +74,10 @@ class Reporter(ReconstructionObserver):
             sys.stderr.flush()
 
 
-def told(row: Row) -> str:
-    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or the status of a failure alone.
+def summary(row: Row) -> str:
+    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or only the status of a failure.
 
-    The reasons, which may be long, stand below the table at the end.
+    The reasons, which may be long, follow below the final table.
     """
     parts = []
     if row.get("registered_images"):
@@ -92,7 +92,7 @@ def told(row: Row) -> str:
 
 @contextlib.contextmanager
 def reporter() -> Iterator[Reporter]:
-    """What suits standard error: a live line on a terminal, plain lines elsewhere."""
+    """The display for standard error: a live line on a terminal, plain lines elsewhere."""
     if not sys.stderr.isatty():
         yield Reporter()
         return

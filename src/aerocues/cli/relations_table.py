@@ -1,4 +1,4 @@
-"""What `aerocues validate` prints of how figures of pairs relate to 3D models."""
+"""Correlations of pairs and 3D models in the output of `aerocues validate`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ HEADINGS = {
 
 
 def found_relations(results: Measured, preset: str | None, dataset: str | None) -> Relations | str:
-    """The relations, or why there are none."""
+    """The relations, or the reason why there are none."""
     from aerocues.errors import ScoreError
     from aerocues.scoring.outcomes import relate_outcomes
 
@@ -47,7 +47,7 @@ def print_relations(found: Relations | str) -> None:
     shown = found.spearman == found.spearman
     numbers = sorted({int(number) for number in found.numbers[shown]})
     over = f"{numbers[0]}" if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}"
-    title = f"\n3D models: Spearman's correlation of figures of pairs with them, over {over}"
+    title = f"\n3D models: Spearman's correlation with figures of pairs, over {over}"
     print_title(console, f"{title} combinations")
     headings = [HEADINGS.get(name, name) for name in found.outcomes]
     output = plain_table("", *headings, numbers=len(headings), gap=1)
@@ -56,8 +56,8 @@ def print_relations(found: Relations | str) -> None:
         output.add_row(name, *(f"{value:.2f}" if value == value else "-" for value in values))
     print_table(console, output)
     console.print(
-        "What describes a model is taken over those that succeeded; images over all. The report "
-        "shows Pearson's, too."
+        "Figures of models count for successful reconstructions, images for all. The report also "
+        "shows Pearson's correlation."
     )
 
 

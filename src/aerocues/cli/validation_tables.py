@@ -1,4 +1,4 @@
-"""What `aerocues validate` prints."""
+"""The output of `aerocues validate`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LISTED = ("detectors", "descriptors", "norms", "matchers", "detector-descriptor 
 
 
 def print_validation(scores: Scores, found: Validation, measured: MeasuredTable, top: int) -> None:
-    """Print all of it, section by section, each with how to read it."""
+    """Print all sections, each with a title that explains it."""
     from aerocues.scoring.resampling import unit_of_resampling
 
     console = standard_output()
@@ -37,7 +37,9 @@ def print_validation(scores: Scores, found: Validation, measured: MeasuredTable,
     print_title(console, "\naggregation of the weights: Spearman's correlation of the rankings")
     each = found.aggregation
     print_table(console, matrix_table(each.names, each.correlation, each.best))
-    print_title(console, "\ncriteria left out: Spearman's correlation with the ranking by all")
+    print_title(
+        console, "\ncriteria left out: Spearman's correlation with the ranking by all criteria"
+    )
     print_table(console, _left_out(found))
     print_title(console, "\nother methods, same criteria and weights: Spearman's correlation")
     if isinstance(found.agreement, str):
@@ -57,21 +59,21 @@ def print_validation(scores: Scores, found: Validation, measured: MeasuredTable,
 
 
 def print_title(console: Console, text: str) -> None:
-    """Print a line that stands above a table."""
+    """Print the title of a table."""
     from rich.text import Text
 
     console.print(Text(text, style="bold"))
 
 
 def correlation_text(value: float) -> str:
-    """A correlation with three digits; a dash where it is not defined."""
+    """A correlation with three digits; a dash if undefined."""
     return "-" if value != value else f"{value:.3f}"
 
 
 def matrix_table(
     names: Sequence[str], values: NDArray[Any], best: Sequence[str] | None = None
 ) -> Table:
-    """A matrix with its names on both sides, and what each ranking puts first."""
+    """A matrix with names on both sides, and the best of each ranking."""
     if standard_output().width < WIDE:
         return numbered_matrix(names, values)
     headings = [*names, *(["the best"] if best else [])]
@@ -86,7 +88,7 @@ def matrix_table(
 
 
 def numbered_matrix(names: Sequence[str], values: NDArray[Any]) -> Table:
-    """A matrix whose columns are numbered, where the names are too long for headings."""
+    """A matrix with numbered columns, for names too long for headings."""
     numbers = [str(number + 1) for number in range(len(names))]
     output = plain_table("", "", *numbers, numbers=len(numbers), gap=1)
     output.columns[1].no_wrap = True
@@ -149,10 +151,10 @@ def _print_rank_reversal(console: Console, found: Validation) -> None:
     if found.rank_reversal is None:
         return
     each = found.rank_reversal
-    print_title(console, f"\nrank reversal: {100 * each.share:.0f} % of the combinations dropped")
+    print_title(console, f"\nrank reversal: {100 * each.share:.0f} % of the combinations removed")
     console.print(
-        f"in {each.rounds} rounds the others moved by {each.mean_shift:.2f} places on average and "
-        f"{each.largest_shift:.0f} at most;\nthe best of them stayed the best in "
+        f"in {each.rounds} rounds the remaining ones moved by {each.mean_shift:.2f} places on "
+        f"average, by {each.largest_shift:.0f} at most;\nthe best of them stayed the best in "
         f"{100 * each.best_kept:.0f} %; Spearman's correlation "
         f"{correlation_text(each.spearman_mean)} on average, "
         f"{correlation_text(each.spearman_lowest)} at least"
@@ -175,5 +177,5 @@ def _print_critical_difference(
     console.print(
         f"Friedman's chi-square {found.chi_square:.1f} over {found.units} {unit}s, p = "
         f"{found.p_value:.2g}; mean ranks that differ\nby less than "
-        f"{found.critical_difference:.2f} (joined by a bar) cannot be told apart"
+        f"{found.critical_difference:.2f} (joined by a bar) are not significantly different"
     )

@@ -25,12 +25,16 @@ from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.worker_pool import WorkerPool
 from aerocues.results.versions import machine_name, software_versions
 
+# Software that affects rows: rows are identified by the versions of the run, so that other versions
+# must not be mixed with them.
 SAME_VERSIONS = ("aerocues", "opencv")
-# A process is kept for the next unit, and ended if none comes, to free its memory.
+# A process waits this long for the next unit, which saves its start; then its memory is released.
 IDLE_SECONDS = 60.0
+# Shorter intervals keep the display more current, and cost messages to the scheduler.
 SECONDS_BETWEEN_REPORTS = 1.0
+# Between attempts to get the lock of a machine: longer ones leave it idle between two measurements.
 SECONDS_BETWEEN_TRIES = 0.1
-# Share of the memory of a Dask worker; the rest is for the worker itself.
+# Share of the memory of a Dask worker for its processes; the rest is for the worker itself.
 MEMORY_SHARE = 0.8
 
 

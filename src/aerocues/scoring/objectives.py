@@ -80,13 +80,13 @@ OBJECTIVES: dict[str, Objective] = {
     for objective in (
         Objective(
             "balanced",
-            "balance of quality and speed",
+            "a balance of quality and speed",
             "CUES as in 'aerocues score', with weights estimated from the measurements (in the "
             "thesis: maximum efficiency)",
         ),
         Objective(
             "speed",
-            "boards and phones: fast",
+            "boards and phones",
             "CUES of accuracy (half of the weight) and quantity (half), times the fourth root of "
             "least seconds / seconds: a combination that takes 16 times as long must be twice as "
             "good (in the thesis: mobile)",

@@ -1,4 +1,4 @@
-"""What light and air make of a colour."""
+"""Shading: light and air applied to a surface colour."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def lit(kind: int, colour: Rgb, at: Rgb, normal: Rgb, light: Light) -> Rgb:
     shadow = sunlit(light, at, normal)
     sun = max(facing, 0.0) * shadow
     if kind == Material.LEAF:
-        # Leaves point everywhere and let light through: the sun also reaches their far side.
+        # Leaves point in all directions and transmit light: the sun also reaches their far side.
         sun = (0.30 + 0.55 * max(facing, 0.0) + 0.15 * abs(facing)) * shadow * (0.35 + 0.65 * seen)
     sky = seen * (0.62 + 0.38 * normal[2])
-    # What the ground reflects lights walls and the undersides of eaves.
+    # Light reflected by the ground reaches walls and the undersides of eaves.
     bounced = 0.10 * (1.0 - 0.8 * normal[2]) * (0.4 + 0.6 * seen)
     red = sun * light.sun_colour[0] + sky * light.sky_colour[0] + 1.1 * bounced
     green = sun * light.sun_colour[1] + sky * light.sky_colour[1] + 1.0 * bounced
@@ -44,7 +44,7 @@ def lit(kind: int, colour: Rgb, at: Rgb, normal: Rgb, light: Light) -> Rgb:
 
 @compiled
 def through_air(colour: Rgb, distance: float, light: Light) -> Rgb:
-    """What is left of a colour, and what haze adds, over a distance."""
+    """A colour seen through haze over a distance: attenuated, plus the light of the haze."""
     clear = math.exp(-light.extinction * distance)
     veil = 1.0 - clear
     return (
@@ -56,9 +56,9 @@ def through_air(colour: Rgb, distance: float, light: Light) -> Rgb:
 
 @compiled
 def glint(kind: int, at: Rgb, ray: Rgb, length: float, footprint: float) -> float:
-    """Brightness beyond the mean, as a share of it, of what shines towards the camera.
+    """Relative change of brightness of a surface that shines towards the camera.
 
-    Tufts and crowns point everywhere: which of them shine changes within a few degrees.
+    Tufts and crowns point in all directions: which of them shine changes within a few degrees.
     """
     x, y = at[0] + 0.6 * at[2], at[1] - 0.6 * at[2]
     north, east = 8.0 * ray[0] / length, 8.0 * ray[1] / length

@@ -1,4 +1,4 @@
-"""Where a camera is and looks, and how it projects: AirSim's angles, OpenCV's pixels."""
+"""Camera poses and projection, with AirSim's angles and OpenCV's pixels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Pose:
     north, east, down : float
         Position in metres; ``down`` is negative above the origin, as in AirSim.
     pitch, yaw, roll : float
-        Degrees. Pitch 0 looks at the horizon, -90 at the ground; yaw 0 is north, 90 is east.
+        Degrees. Pitch 0 is horizontal, -90 straight down; yaw 0 is north, 90 is east.
     """
 
     north: float
@@ -43,17 +43,17 @@ class Pose:
 
 
 def pinhole(width: int, height: int, fov: float) -> PinholeCamera:
-    """A camera whose horizontal field of view is `fov` degrees and whose axis meets the middle.
+    """A camera with a horizontal field of view of `fov` degrees and a centred principal point.
 
-    The middle of the picture is (width / 2, height / 2) from its upper left corner, which is half a
-    pixel less where the centre of the first pixel is (0, 0).
+    The centre of the image is (width / 2, height / 2) from its upper left corner, and half a pixel
+    less if the centre of the first pixel is (0, 0).
     """
     focal = width / 2 / math.tan(math.radians(fov) / 2)
     return PinholeCamera(width, height, focal, focal, width / 2 - 0.5, height / 2 - 0.5)
 
 
 def enlarged(camera: PinholeCamera, factor: int) -> PinholeCamera:
-    """The camera with `factor` x `factor` samples in each pixel, evenly spread over it."""
+    """The camera with `factor` x `factor` evenly spaced samples in each pixel."""
     return PinholeCamera(
         camera.width * factor,
         camera.height * factor,

@@ -28,7 +28,7 @@ _PAINTS: tuple[Colour, ...] = (
 
 @dataclass(frozen=True)
 class CarKind:
-    """Length, width and height in metres, and where the cabin begins and ends along the length."""
+    """Length, width and height in metres; start and end of the cabin as shares of the length."""
 
     length: float
     width: float
@@ -45,7 +45,7 @@ KINDS = (
 
 
 def add_car(builder: MeshBuilder, rng: np.random.Generator, frame: Frame) -> int:
-    """Add a car that looks along x; the number of its object."""
+    """Add a car that faces along x, and return the number of its object."""
     kind = KINDS[int(rng.choice(len(KINDS), p=[0.34, 0.36, 0.2, 0.1]))]
     paint = builder.surface(Material.PLAIN, _PAINTS[int(rng.integers(len(_PAINTS)))])
     glass = builder.surface(Material.GLASS, (0.035, 0.042, 0.05))

@@ -1,4 +1,4 @@
-"""The pattern of each cover of the ground as a function of the position."""
+"""The pattern of each ground cover as a function of the position."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from aerocues.simulation.noise import fractal_noise, hashed, resolved
 from aerocues.simulation.surfaces import Rgb, laid, mixed, scaled
 
 TAPS = 3
-"""The plan is read at this many points along each side of a pixel."""
+"""Points per side of a pixel at which the plan is read: more smooth the edges between covers, and
+shading takes longer with their square."""
 
 
 @compiled
 def _spots(x: float, y: float, side: float, share: float, footprint: float, seed: int) -> float:
-    """Round spots, one in so many cells of a side in metres: 1 in their middle, 0 outside."""
+    """Round spots in a share of the cells of a side in metres: 1 in the middle, 0 outside."""
     i, j = math.floor(x / side), math.floor(y / side)
     if hashed(i, j, seed) > share:
         return 0.0
@@ -57,7 +58,7 @@ def _asphalt(x: float, y: float, footprint: float, base: float) -> Rgb:
     wear = fractal_noise(x, y, 18.0, 0.8, 0.7, footprint, 201)
     grain = fractal_noise(x, y, 0.5, 0.04, 0.95, footprint, 211)
     shade = 1.0 + 0.13 * wear + 0.13 * grain
-    # Cracks lie where a wandering noise passes through zero.
+    # Cracks are the zero crossings of a noise.
     crack = abs(fractal_noise(x, y, 9.0, 0.5, 0.55, footprint, 221))
     shade -= 0.42 * max(1.0 - crack / 0.025, 0.0) * resolved(0.35, footprint)
     shade -= 0.45 * _spots(x, y, 2.7, 0.12, footprint, 231)
@@ -85,7 +86,7 @@ def _slabs(
 
 @compiled
 def _rows(x: float, y: float, footprint: float, plot: NDArray[np.float32], green: bool) -> Rgb:
-    """Rows of crop or stubble between bare earth, and the tracks of a tractor."""
+    """Rows of crop or stubble between bare soil, and tractor tracks."""
     wander = 0.25 * fractal_noise(x, y, 40.0, 10.0, 0.5, footprint, 301)
     across = x * math.sin(plot[0]) - y * math.cos(plot[0]) + wander
     along = x * math.cos(plot[0]) + y * math.sin(plot[0])
@@ -168,7 +169,7 @@ def cover_colour(
 
 @compiled
 def _beyond(x: float, y: float) -> int:
-    """What lies outside the plan: fields and woods in a crooked patchwork."""
+    """The cover outside the plan: an irregular patchwork of fields and woods."""
     bent = x + 40.0 * math.sin(0.006 * y), y + 40.0 * math.sin(0.007 * x)
     return int(8 * hashed(math.floor(bent[0] / 130.0), math.floor(bent[1] / 190.0), 77))
 
@@ -194,7 +195,7 @@ def ground_colour(plan: Plan, x: float, y: float, right: Rgb, down: Rgb, footpri
     x, y : float
         North and east of the pixel's centre, metres.
     right, down : tuple of float
-        How far a step to the next column and row moves on the ground: north, east, up.
+        Steps on the ground to the next column and to the next row: north, east, up.
     footprint : float
         Side of the pixel on the ground in metres.
     """

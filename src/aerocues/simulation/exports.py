@@ -1,4 +1,4 @@
-"""The true poses of a flight in the forms that other programs read."""
+"""Writes the true poses of a flight in the formats of other programs."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def write_poses(
     times: Sequence[float],
     camera: PinholeCamera,
 ) -> None:
-    """Write all forms into a folder.
+    """Write all formats into a folder.
 
-    ``poses.csv``: north, east, down in metres, degrees, seconds. ``trajectory.tum``: time,
-    position and quaternion (x, y, z, w) from camera to world; images of one moment count as taken
-    a second apart, as such a file wants its times to ascend. ``sparse/``: COLMAP's text model
-    without points. The world of the last two is east, north, up: viewers expect up to be up.
+    ``poses.csv``: north, east, down in metres, degrees, seconds. ``trajectory.tum``: time, position
+    and quaternion (x, y, z, w) from camera to world; images of the same time are numbered one
+    second apart, as the format needs ascending times. ``sparse/``: COLMAP's text model without
+    points. The last two use east, north, up, because viewers expect z up.
     """
     moments = times if len(set(times)) == len(times) else [float(i) for i in range(len(times))]
     sparse = folder / "sparse"
@@ -49,7 +49,7 @@ def _write(path: Path, lines: Sequence[str]) -> None:
 
 
 def _camera(camera: PinholeCamera) -> str:
-    # COLMAP's pixel centres lie at 0.5.
+    # COLMAP's pixel centres are at 0.5.
     numbers = (camera.focal_x, camera.focal_y, camera.centre_x + 0.5, camera.centre_y + 0.5)
     return f"1 PINHOLE {camera.width} {camera.height} " + " ".join(repr(n) for n in numbers)
 

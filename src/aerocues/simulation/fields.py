@@ -15,12 +15,13 @@ from aerocues.simulation.streets import Grid
 from aerocues.simulation.trees import BY_NAME, add_hedge
 from aerocues.simulation.yards import add_hall
 
+# Width of a parcel in metres: several are visible in one image from survey altitudes.
 _PARCEL = (38.0, 85.0)
 _HEDGEROW = ("oak", "maple", "bush", "bush", "bush", "birch")
 
 
 def build_fields(seed: int, half: float) -> Scene:
-    """Build the scene; `half` metres of it lie on each side of the origin."""
+    """Build the scene; it extends `half` metres from the origin to each side."""
     rng = np.random.default_rng([seed, 1])
     site = Site("fields", rng, half, Grid((-28.0,), (), half), relief=9.0)
     edges = -half
@@ -35,7 +36,7 @@ def build_fields(seed: int, half: float) -> Scene:
 
 
 def _lay_strip(site: Site, south: float, north: float) -> None:
-    """Parcels side by side, each with its own crop and direction."""
+    """Parcels next to each other, each with its own crop and direction."""
     rng, west = site.rng, -site.half
     while west < site.half:
         east = min(west + float(rng.uniform(*_PARCEL)), site.half)
@@ -69,7 +70,7 @@ def _plant_row(site: Site, start: tuple[float, float], end: tuple[float, float])
 
 
 def _lay_tracks(site: Site) -> None:
-    """Two ruts with grass between them, across the whole land."""
+    """Tracks across the whole scene: two ruts with grass between them."""
     u = np.linspace(-site.half, site.half, 120)
     for at in np.arange(-site.half + 60, site.half, 150.0):
         winding = at + 6 * np.sin(u / 40 + at)

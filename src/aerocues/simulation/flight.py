@@ -1,4 +1,4 @@
-"""Simulated flights: images with ground truth beside them, in one folder that can be gone on with.
+"""Simulated flights: images and their ground truth in one folder, which can be continued.
 
 ::
 
@@ -33,7 +33,7 @@ from aerocues.simulation.sensor import Sensor, develop
 from aerocues.simulation.surveys import Shot, Survey
 
 RENDERER_VERSION = "2"
-"""Part of the keys of frames; raised when pictures come to differ for the same settings."""
+"""Part of the keys of frames; increased when the same settings give other images."""
 
 SUFFIXES = {"png": ".png", "jpeg": ".jpg"}
 Progress = Callable[[int, int], None]
@@ -41,14 +41,14 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Settings:
-    """What is flown over, and with what.
+    """Scene, camera and conditions of a flight.
 
     Parameters
     ----------
     scene : str
         Name of a row of `scenes.SCENES`.
     seed : int
-        Of the scene and of the sensor's noise.
+        Seed of the scene and of the sensor noise.
     width, height : int
         Pixels.
     fov : float
@@ -56,9 +56,9 @@ class Settings:
     weather : Weather
     sensor : Sensor
     interval : float
-        Seconds from image to image: cars drive on. 0: all are of one moment.
+        Seconds between images, in which cars move. 0: all images show the same moment.
     wind : float
-        Metres by which the wind moves crowns.
+        How far the wind moves tree crowns, in metres.
     form : str
         ``png`` or ``jpeg``.
     """
@@ -76,9 +76,11 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.form not in SUFFIXES:
-            raise SimulationError(f"format '{self.form}' is unknown; use {', '.join(SUFFIXES)}")
+            raise SimulationError(f"form must be one of {', '.join(SUFFIXES)}, got {self.form!r}")
         if min(self.width, self.height) < 16 or not 1.0 <= self.fov <= 150.0:
-            raise SimulationError("images need 16 pixels a side and a field of view of 1 to 150")
+            raise SimulationError(
+                "width and height must be at least 16 pixels, the field of view 1 to 150 degrees"
+            )
 
     @property
     def camera(self) -> PinholeCamera:
@@ -88,7 +90,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Flown:
-    """How many images were rendered, and how many were there already."""
+    """Numbers of rendered images and of kept ones."""
 
     rendered: int
     kept: int
@@ -101,26 +103,26 @@ def simulate(
     progress: Progress | None = None,
     subset: str | None = None,
 ) -> Flown:
-    """Fly a survey; images that are there, made with the same settings, are kept.
+    """Fly a survey; existing images with the same settings are kept.
 
-    Those that were made with other settings, or belong to another survey, are taken away first.
+    Images with other settings, or of another survey, are removed first.
 
     Parameters
     ----------
     folder : Path
-        Is made where it is missing.
+        Created if missing.
     survey : Survey
     settings : Settings
     progress : callable, optional
-        Called with the number of finished images and of all, first when work begins.
+        Called with the numbers of finished images and of all images, first at the start.
     subset : str, optional
-        Render only the images whose name or folder matches one of these globs, separated by commas;
-        the poses are those of the whole survey.
+        Render only the images whose name or folder matches one of these globs, separated by commas.
+        The poses of the whole survey are written.
 
     Raises
     ------
     SimulationError
-        If there is no such scene, the subset is empty, or the folder holds something else.
+        If there is no such scene, the subset is empty, or the folder has other files.
     """
     require_scene(settings.scene)
     chosen = shots_in(survey, subset, settings.form)
@@ -150,12 +152,12 @@ def simulate(
 
 
 def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
-    """Numbers of the shots of a survey whose name or folder is in a subset; None: of all.
+    """Indices of the shots of a survey in a subset; None: all shots.
 
     Raises
     ------
     SimulationError
-        If there is none.
+        If the subset is empty.
     """
     options = Options(subset=subset)
     chosen = [
@@ -171,7 +173,7 @@ def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
 
 
 class _Studio:
-    """The scene, built when the first image is taken, and its light at the moment of the last."""
+    """The scene, built for the first image, and its light at the time of the latest image."""
 
     def __init__(self, settings: Settings, half: float) -> None:
         self._settings, self._half = settings, half
@@ -199,7 +201,7 @@ class _Studio:
 
 
 def _half(survey: Survey, camera: PinholeCamera) -> float:
-    """How far from the origin the survey sees details, but not farther than `scenes.HALF`."""
+    """Distance from the origin that the survey can see, at most `scenes.HALF`."""
     diagonal = float(np.hypot(camera.width / camera.focal_x, camera.height / camera.focal_y)) / 2
     reach = 0.0
     for shot in survey.shots:

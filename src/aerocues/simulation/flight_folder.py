@@ -1,4 +1,4 @@
-"""The folder of a simulated flight: what is there, and what no longer belongs there."""
+"""The folder of a simulated flight: existing images, and removal of outdated ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ KEYS = "keys.json"
 
 
 class FlightFolder:
-    """Images and depth maps by name, each with the key of all that decided it.
+    """Images and depth maps by name, each with the key of its settings.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class FlightFolder:
     Raises
     ------
     SimulationError
-        If the folder is a file or holds something else.
+        If the folder is a file or has other files.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -45,12 +45,12 @@ class FlightFolder:
             self._keys = json.loads(self._file.read_text(encoding="utf-8"))
 
     def keep(self, keys: Mapping[str, str]) -> None:
-        """Take away every image that is not as it is to be; before anything new is said of them.
+        """Remove every outdated image; called before new poses are written.
 
         Parameters
         ----------
         keys : mapping of str to str
-            Of all images of the flight, by name.
+            Keys of all images of the flight, by name.
         """
         self.truth.mkdir(parents=True, exist_ok=True)
         for name in [name for name, key in self._keys.items() if keys.get(name) != key]:
@@ -60,11 +60,11 @@ class FlightFolder:
         write_json(self._file, self._keys)
 
     def has(self, name: str) -> bool:
-        """Whether an image is there with its depth."""
+        """Whether an image and its depth exist."""
         return name in self._keys and self.image(name).is_file() and self.depth(name).is_file()
 
     def add(self, name: str, key: str) -> None:
-        """Say that an image is there; comes after its files."""
+        """Record an image; called after its files are written."""
         self._keys[name] = key
         write_json(self._file, self._keys)
 
@@ -78,14 +78,14 @@ class FlightFolder:
 
 
 def write_json(path: Path, content: object) -> None:
-    """Write JSON beside its place and rename it."""
+    """Write JSON to a temporary file and rename it."""
     part = path.with_suffix(".part")
     part.write_text(json.dumps(content, indent=1), encoding="utf-8")
     part.replace(path)
 
 
 def write_depth(path: Path, depth: NDArray[np.float32]) -> None:
-    """Write an array beside its place and rename it."""
+    """Write an array to a temporary file and rename it."""
     part = path.with_suffix(".part")
     with part.open("wb") as file:
         np.save(file, depth)

@@ -1,4 +1,4 @@
-"""What stands in gardens: fences, sheds, pools and furniture."""
+"""Objects in gardens: fences, sheds, pools and furniture."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def add_shed(builder: MeshBuilder, rng: np.random.Generator, frame: Frame) -> No
 def add_pool(
     builder: MeshBuilder, rng: np.random.Generator, painter: Painter, frame: Frame
 ) -> None:
-    """Paint a pool with a paved edge; beside it stand loungers."""
+    """Paint a pool with a paved edge, and add loungers next to it."""
     a, b = rng.uniform(1.7, 2.4), rng.uniform(3.2, 4.6)
     turn = frame.heading + math.pi / 2
     if rng.random() < 0.5:
@@ -137,7 +137,7 @@ def add_boulder(builder: MeshBuilder, rng: np.random.Generator, frame: Frame) ->
 
 
 def add_lamp(builder: MeshBuilder, frame: Frame) -> None:
-    """Add a street lamp whose arm reaches along x."""
+    """Add a street lamp with its arm along x."""
     steel = builder.surface(Material.PLAIN, (0.25, 0.26, 0.27))
     add_pole(builder, frame, (0.10, 0.06), 7.0, steel, sides=5)
     add_box(builder, frame, (0.0, -0.05, 6.9), (1.8, 0.05, 7.0), steel)

@@ -1,4 +1,4 @@
-"""Where a simulated world lies on Earth."""
+"""Georeference of a simulated world."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ORIGIN = GpsPosition(47.641468, -122.140165, 122.0)
 
 
 def geodetic(north: float, east: float, down: float, origin: GpsPosition = ORIGIN) -> GpsPosition:
-    """WGS84 position of a point of the world, whose axes are those of the tangent plane."""
+    """WGS84 position of a point of the world, whose axes span the tangent plane."""
     latitude, longitude = math.radians(origin.latitude), math.radians(origin.longitude)
     eccentricity = FLATTENING * (2 - FLATTENING)
     sin_lat, cos_lat = math.sin(latitude), math.cos(latitude)

@@ -1,4 +1,4 @@
-"""What covers the ground: a plan in cells, painted polygon by polygon, and its terrain."""
+"""The ground: a plan of covers in cells, painted polygon by polygon, and the terrain."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from aerocues.simulation.mesh import MeshBuilder, Points
 from aerocues.simulation.surfaces import Material
 
 CELL = 0.125
-"""Side of a cell of the plan in metres."""
+"""Side of a cell of the plan in metres: smaller cells have finer edges, and memory grows with the
+inverse square."""
 
+# Polygons are drawn with 1/16 of a cell: below a centimetre.
 _FRACTION_BITS = 4
+# Extent of the ground in metres: far enough for a horizon in oblique images.
 _FAR = 4000.0
 
 
 class Cover(IntEnum):
-    """What lies on the ground."""
+    """Cover of the ground."""
 
     MEADOW = 0
     LAWN = 1
@@ -50,14 +53,14 @@ class Plan(NamedTuple):
     Parameters
     ----------
     cover : (N, N) uint8
-        A `Cover`; rows run north, columns east.
+        A `Cover`; rows go north, columns east.
     plot : (N, N) uint16
         Row of `plots`.
     plots : (P, 5) float32
-        Direction (radians from north) of mowing, rows and joints, dryness from 0 to 1, and a tint:
+        Direction (radians from north) of mowing, rows and joints; dryness from 0 to 1; tint:
         factors of red, green and blue.
     half : float
-        The plan reaches so many metres north, south, east and west of the origin.
+        Extent of the plan from the origin to each side, in metres.
     """
 
     cover: NDArray[np.uint8]
@@ -78,7 +81,7 @@ class Painter:
         self._current = 0
 
     def plot(self, angle: float, dryness: float, tint: tuple[float, float, float]) -> None:
-        """Begin a plot: what is painted from now on has its direction, dryness and tint."""
+        """Begin a plot: later polygons get its direction, dryness and tint."""
         self._plots.append((angle, dryness, *tint))
         self._current = len(self._plots) - 1
 
@@ -91,7 +94,7 @@ class Painter:
             cv2.fillPoly(plane, [points], value, shift=_FRACTION_BITS)
 
     def band(self, line: Points, width: float, cover: Cover) -> None:
-        """Fill a band of a width in metres along a line of points."""
+        """Fill a band of the given width in metres along a line of points."""
         along = np.gradient(line, axis=0)
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
         across = np.column_stack([-along[:, 1], along[:, 0]]) * width / 2
@@ -105,7 +108,7 @@ class Painter:
         cover: Cover,
         waves: float = 0.0,
     ) -> None:
-        """Fill an ellipse turned by radians; `waves` makes its edge uneven."""
+        """Fill an ellipse, rotated by `turn` radians; `waves` makes its edge uneven."""
         around = np.linspace(0, 2 * math.pi, 64, endpoint=False)
         reach = 1 + waves * (np.sin(3 * around + centre[0]) + 0.6 * np.sin(5 * around + centre[1]))
         u, v = radii[0] * reach * np.cos(around), radii[1] * reach * np.sin(around)
@@ -114,7 +117,7 @@ class Painter:
         self.polygon(outline, cover)
 
     def cover_at(self, north: float, east: float) -> Cover:
-        """What lies at a point of the plan."""
+        """The cover at a point of the plan."""
         row, column = int((north + self._half) / CELL), int((east + self._half) / CELL)
         return Cover(int(self._cover[row, column]))
 
@@ -123,14 +126,14 @@ class Painter:
         return Plan(self._cover, self._plot, np.array(self._plots, np.float32), self._half)
 
     def _pixels(self, corners: Points) -> NDArray[np.int32]:
-        # OpenCV wants column and row; the centre of cell i lies at (i + 0.5) CELL - half.
+        # OpenCV takes column and row; the centre of cell i is at (i + 0.5) CELL - half.
         pixels = (corners[:, ::-1] + self._half) / CELL - 0.5
         return np.asarray(np.rint(pixels * 2**_FRACTION_BITS), np.int32)
 
 
 @dataclass(frozen=True)
 class Terrain:
-    """Gentle relief: a few long waves of the height over the plane.
+    """Gentle relief: a sum of long waves.
 
     Parameters
     ----------
@@ -142,7 +145,7 @@ class Terrain:
 
     @classmethod
     def from_seed(cls, rng: np.random.Generator, amplitude: float) -> Terrain:
-        """Six waves of 140 to 420 m; `amplitude` is about the greatest height in metres."""
+        """Six waves of 140 to 420 m; `amplitude` is approximately the maximum height in metres."""
         angle, length = rng.uniform(0, 2 * math.pi, 6), rng.uniform(140, 420, 6)
         frequency = 2 * math.pi / length
         share = amplitude * length / length.sum()
@@ -159,12 +162,12 @@ class Terrain:
         return heights
 
     def drape(self, points: Points, above: float = 0.0) -> Points:
-        """(N, 3) positions on the ground, or so many metres above it."""
+        """(N, 3) positions on the ground, or `above` metres over it."""
         return np.column_stack([points[:, :2], self.height(points) + above])
 
 
 def add_terrain(builder: MeshBuilder, terrain: Terrain, half: float) -> None:
-    """Add the ground: 2 m cells within the plan, wider and wider ones to the horizon."""
+    """Add the ground: 2 m cells inside the plan, increasingly wide cells to the horizon."""
     ground = builder.surface(Material.GROUND, (0.5, 0.5, 0.5))
     edges = np.linspace(-half, half, max(int(half // 16), 2))
     for south, north in itertools.pairwise(edges):
@@ -180,7 +183,7 @@ def add_terrain(builder: MeshBuilder, terrain: Terrain, half: float) -> None:
             (-inner, inner, inner, outer),
         ):
             _add_grid(builder, terrain, (south, north, west, east), 48, ground, -0.15)
-        # Rings overlap, each lower than the one within, so that no gap shows between them.
+        # Rings overlap, each lower than the inner one, so that there are no gaps.
         inner = outer - 4.0
 
 

@@ -1,4 +1,4 @@
-"""How houses differ: materials and colours of roofs, walls and trim, as tables."""
+"""Styles of houses: tables of materials and colours of roofs, walls and trim."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from aerocues.simulation.mesh import Colour, MeshBuilder
 from aerocues.simulation.surfaces import Material
 
+# Linear reflectances; the third column of the roofs is their share.
 _WHITE: Colour = (0.62, 0.61, 0.58)
 _ROOFS: tuple[tuple[Material, Colour, float], ...] = (
     (Material.SHINGLES, (0.130, 0.127, 0.125), 0.20),
@@ -47,7 +48,7 @@ class Style:
 
 @dataclass(frozen=True)
 class Body:
-    """A part of a house: half extents along x and y, height of its eaves, rise of its roof."""
+    """A part of a house: half extents along x and y, height of the eaves, rise of the roof."""
 
     half: tuple[float, float]
     eaves: float
@@ -56,7 +57,7 @@ class Body:
 
 
 def varied(rng: np.random.Generator, colour: Colour, spread: float) -> Colour:
-    """A colour near the given one, in brightness and a little in hue."""
+    """A random colour near the given one, mainly in brightness and slightly in hue."""
     tone = rng.uniform(1 - spread, 1 + spread)
     red, green, blue = (
         round(float(part * tone * rng.uniform(1 - spread / 3, 1 + spread / 3)), 3)

@@ -1,4 +1,4 @@
-"""Houses: walls with windows and doors, roofs of several kinds and what stands on them."""
+"""Houses: walls with windows and doors, roofs of several kinds, and objects on roofs."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ def add_house(
     half: tuple[float, float],
     garage: float,
 ) -> None:
-    """Add a house whose front looks along -x.
+    """Add a house whose front faces -x.
 
     Parameters
     ----------
     builder : MeshBuilder
     rng : numpy.random.Generator
     frame : Frame
-        Its origin is the middle of the house on the ground.
+        Its origin is the centre of the house on the ground.
     half : tuple of float
         Half of the depth (x) and of the width (y) in metres.
     garage : float
-        Width of a garage at its right side (+y) in metres, 0 for none.
+        Width of a garage at the right side (+y) in metres; 0: none.
     """
     style = choose_style(builder, rng)
     storeys = 1 if rng.random() < 0.55 else 2
@@ -77,7 +77,7 @@ def _add_pitched(
 def _add_body(builder: MeshBuilder, frame: Frame, body: Body, style: Style) -> None:
     (a, b), overhang = body.half, 0.45
     add_box(builder, frame, (-a, -b, -1.5), (a, b, body.eaves), style.wall)
-    if body.hip == 0:  # the wall goes up to the ridge
+    if body.hip == 0:  # a gable: the wall reaches the ridge
         under = body.eaves + body.rise * overhang / (a + overhang)
         for end in (-b, b):
             points = np.array(
@@ -236,7 +236,7 @@ def _add_patch(
     up: tuple[float, float],
     surfaces: tuple[int, int],
 ) -> None:
-    """Add a flat thing that lies on a slope of a roof, 10 cm above it, with an edge around it."""
+    """Add a flat rectangle on a slope of a roof, 10 cm above it, with a frame."""
     side, slope = place
     for grow, lift, surface in ((0.09, 0.05, surfaces[1]), (0.0, 0.1, surfaces[0])):
         points = []

@@ -16,11 +16,12 @@ from aerocues.simulation.site import Site
 from aerocues.simulation.streets import RESERVE, Grid
 from aerocues.simulation.yards import add_containers, add_hall, add_tank, add_works
 
+# Distances of the streets in metres, east-west and north-south: blocks for large buildings.
 _ROW, _COLUMN = 150.0, 118.0
 
 
 def build_industrial(seed: int, half: float) -> Scene:
-    """Build the scene; `half` metres of it lie on each side of the origin."""
+    """Build the scene; it extends `half` metres from the origin to each side."""
     rows = tuple(float(at) for at in np.arange(-4 * _ROW + 40, half, _ROW) if abs(at) < half - 20)
     columns = tuple(
         float(at) for at in np.arange(-6 * _COLUMN + 50, half, _COLUMN) if abs(at) < half - 20
@@ -39,7 +40,7 @@ def build_industrial(seed: int, half: float) -> Scene:
 
 
 def _fill_block(site: Site, low: tuple[float, float], high: tuple[float, float]) -> None:
-    """Two works one behind the other, each in its fenced yard with a green edge."""
+    """Two sites one behind the other, each in a fenced yard with a green edge."""
     middle = (low[0] + high[0]) / 2
     for start, end in ((low[0], middle), (middle, high[0])):
         centre = ((start + end) / 2, (low[1] + high[1]) / 2)
@@ -98,7 +99,7 @@ def _build(site: Site, frame: Frame, half: tuple[float, float]) -> None:
 
 
 def _park(site: Site, frame: Frame, half: tuple[float, float]) -> None:
-    """A row of parking bays with their lines, most of them taken."""
+    """A row of parking bays with lines, most of them occupied."""
     rng, (a, b) = site.rng, half
     paint = site.painter
     left, count = -a + 3.0, int(1.1 * b / 2.6)

@@ -1,4 +1,4 @@
-"""Light of a scene, baked before the first frame: where the sun and how much of the sky is seen."""
+"""Light of a scene, baked before the first frame: sun shadows and visible sky."""
 
 from __future__ import annotations
 
@@ -14,12 +14,17 @@ from aerocues.simulation.mesh import Mesh
 from aerocues.simulation.rasterizer import nearest
 from aerocues.simulation.surfaces import Rgb
 
+# Side of the shadow map: larger maps have sharper shadow edges and take more memory and baking time
+# (100 MB; texels of 0.2 m in a scene of 380 m).
 _SHADOW_SIZE = 5120
+# The visible sky is computed on cells of this side in metres, in this many directions and at these
+# distances in cells. They grow like Fibonacci numbers: near objects hide more of the sky than far
+# ones. More of each is more exact, and baking takes longer.
 _SKY_CELL = 0.5
 _SKY_DIRECTIONS = 12
 _SKY_STEPS = (1, 2, 3, 5, 8, 13, 21, 34)
 _POROSITY = 0.75
-"""Part of the sky that what stands above a point hides: crowns let some through."""
+"""Share of the sky that higher objects hide: crowns let some light through."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +34,12 @@ class Weather:
     Parameters
     ----------
     azimuth, elevation : float
-        Of the sun: degrees from north over east, and above the horizon.
+        Direction of the sun: degrees clockwise from north, and above the horizon.
     haze : float
-        0 for none; 1 halves the contrast at about 700 m.
+        0: none; 1 halves the contrast at about 700 m.
     glints : float
-        How much the look of a spot depends on where it is seen from, over that of dry vegetation:
-        leaves and blades shine in one direction, and tiles do a little. 0 for none.
+        Dependence of the appearance on the viewing direction, relative to dry vegetation: leaves
+        and blades of grass shine in one direction, tiles a little. 0: none.
     """
 
     azimuth: float = 140.0
@@ -51,20 +56,20 @@ class Light(NamedTuple):
     sun : (3,) float64
         Unit vector to the sun: north, east, up.
     sun_colour, sky_colour : (3,) float64
-        Irradiance over pi, so that a white surface that faces it has this radiance.
+        Irradiance / pi: the radiance of a white surface that faces the light.
     shadow : (S, S) float32
-        Nearness to the sun of what it meets first, in metres.
+        Nearness to the sun, in metres, of the first surface that it meets.
     shadow_frame : (3, 4) float64
         From the world (north, east, down) to column, row and nearness of `shadow`.
     openness : (K, K) float32
-        Share of the sky that a point on the ground sees, in cells from `-half`.
+        Share of the sky visible from the ground, in cells from `-half`.
     top, floor : (K, K) float32
-        Height in metres of what is highest and of the ground in each cell.
+        Height in metres of the highest surface and of the ground in each cell.
     half : float
     extinction : float
-        Of the air, per metre.
+        Extinction of the air per metre.
     glints : float
-        As `Weather` has it.
+        See `Weather`.
     """
 
     sun: NDArray[np.float64]
@@ -81,7 +86,7 @@ class Light(NamedTuple):
 
 
 def bake(mesh: Mesh, floor: NDArray[np.float32], half: float, weather: Weather) -> Light:
-    """Light of a mesh whose details lie within `half` metres of the origin.
+    """Light of a mesh whose details are within `half` metres of the origin.
 
     Parameters
     ----------
@@ -96,7 +101,7 @@ def bake(mesh: Mesh, floor: NDArray[np.float32], half: float, weather: Weather) 
     sun = np.array([level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation)])
     frame = _shadow_frame(sun, half)
     top = np.maximum(nearest(mesh, _frame_from_above(half), floor.shape), floor)
-    # The lower the sun stands, the longer its way through air that scatters blue out.
+    # A lower sun has a longer path through the air, which scatters blue light.
     path = min(1.0 / max(sun[2], 0.05), 12.0)
     through = np.exp(-np.array([0.055, 0.095, 0.17]) * path * (1 + 0.6 * weather.haze))
     return Light(
@@ -115,7 +120,7 @@ def bake(mesh: Mesh, floor: NDArray[np.float32], half: float, weather: Weather) 
 
 
 def ground_centres(half: float) -> NDArray[np.float64]:
-    """North and east of the centres of the cells that `bake` wants the ground's height of."""
+    """North and east of the cell centres at which `bake` needs the height of the ground."""
     count = round(2 * half / _SKY_CELL)
     centres = (np.arange(count) + 0.5) * _SKY_CELL - half
     north, east = np.meshgrid(centres, centres, indexing="ij")
@@ -135,14 +140,14 @@ def _shadow_frame(sun: NDArray[np.float64], half: float) -> NDArray[np.float64]:
     rows = np.cross(towards, across)
     frame = np.zeros((3, 4))
     frame[:, :3] = np.stack([across * scale, rows * scale, towards])
-    # Seen from a low sun the ground is flat: its rows may spread over the whole map.
+    # A low sun sees the ground foreshortened, so that its rows can use the whole map.
     frame[1] *= 1.0 / max(abs(sun[2]), 0.35)
     frame[:2, 3] = _SHADOW_SIZE / 2
     return frame
 
 
 def _openness(top: NDArray[np.float32], floor: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Share of the sky above the horizon that the heights around each cell leave."""
+    """Share of the sky above the horizon that the surroundings of each cell leave visible."""
     seen = np.zeros_like(top)
     for direction in range(_SKY_DIRECTIONS):
         angle = 2 * math.pi * (direction + 0.5) / _SKY_DIRECTIONS
@@ -152,16 +157,16 @@ def _openness(top: NDArray[np.float32], floor: NDArray[np.float32]) -> NDArray[n
             distance = max(math.hypot(*shift), 1.0) * _SKY_CELL
             higher = np.roll(top, shift, axis=(0, 1)) - floor
             np.maximum(slope, higher / distance, out=slope)
-        # Of a sky of even brightness, what lies below the elevation e lights by sin(e)^2.
+        # In a uniform sky, the part below elevation e contributes sin(e)^2 of the light.
         seen += 1 - _POROSITY * slope**2 / (1 + slope**2)
     return np.asarray(seen / _SKY_DIRECTIONS, np.float32)
 
 
 @compiled
 def sunlit(light: Light, at: Rgb, normal: Rgb) -> float:
-    """How much of the sun reaches a point (north, east, up): 0 to 1, with soft edges."""
+    """Share of the sun that reaches a point (north, east, up): 0 to 1, with soft edges."""
     frame, size = light.shadow_frame, len(light.shadow)
-    # A step off the surface: a texel of the map must not shade the surface it shows.
+    # Offset from the surface: a texel of the map must not shade its own surface.
     x, y, z = at[0] + 0.12 * normal[0], at[1] + 0.12 * normal[1], -at[2] - 0.12 * normal[2]
     column = frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z + frame[0, 3]
     row = frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z + frame[1, 3]
@@ -182,7 +187,7 @@ def sunlit(light: Light, at: Rgb, normal: Rgb) -> float:
 
 @compiled
 def sky_seen(light: Light, at: Rgb) -> float:
-    """Share of the sky that a point sees: baked on the ground, all of it at the top."""
+    """Share of the sky visible from a point: baked on the ground, 1 at the highest surface."""
     size = len(light.openness)
     row = (at[0] + light.half) / _SKY_CELL - 0.5
     column = (at[1] + light.half) / _SKY_CELL - 0.5

@@ -1,4 +1,4 @@
-"""One lot of a suburb: a house in its garden, with what people put there."""
+"""One lot of a suburb: a house and a garden with its objects."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from aerocues.simulation.streets import CARRIAGEWAY, RESERVE
 from aerocues.simulation.trees import BY_NAME, KINDS, add_hedge
 
 _TO_STREET = CARRIAGEWAY + 0.3 - RESERVE
-"""Where the kerb is, from the front of a lot."""
+"""Position of the kerb, from the front of a lot."""
 
 
 @dataclass(frozen=True)
 class Lot:
-    """A rectangle of the grid; x leads from the street into it, y to the right.
+    """A rectangle of the grid; x goes from the street into the lot, y to the right.
 
     Parameters
     ----------
     site : Site
     front : float
-        Position of its front, east on the grid.
+        Position of the front, east on the grid.
     middle : float
-        Of the middle of its front, north on the grid.
+        Position of the centre of the front, north on the grid.
     side : float
-        1 where it lies east of its street, -1 where it lies west.
+        1 if the lot is east of its street, -1 if west.
     width, depth : float
         Metres.
     """
@@ -54,7 +54,7 @@ class Lot:
     depth: float
 
     def line(self, *points: tuple[float, float]) -> Points:
-        """World points (north, east) of local ones."""
+        """World points (north, east) of local points."""
         local = np.array(points, np.float64)
         grid = np.column_stack(
             [self.middle - self.side * local[:, 1], self.front + self.side * local[:, 0]]
@@ -66,13 +66,13 @@ class Lot:
         return self.line(low, (high[0], low[1]), high, (low[0], high[1]))
 
     def frame(self, x: float, y: float, turn: float = 0.0) -> Frame:
-        """A frame on the ground that looks into the lot."""
+        """A frame on the ground that faces into the lot."""
         u, v = self.middle - self.side * y, self.front + self.side * x
         return self.site.frame(u, v, self.side * math.pi / 2, turn)
 
 
 def furnish_lot(lot: Lot) -> None:
-    """House, drive, path, terrace, fences, and the garden."""
+    """Add house, driveway, path, terrace, fences and garden."""
     site, rng = lot.site, lot.site.rng
     angle = lot.frame(0.0, 0.0).heading + rng.choice([0.0, math.pi / 2])
     green = rng.beta(1.6, 1.4)
@@ -94,7 +94,7 @@ def furnish_lot(lot: Lot) -> None:
 
 
 def _wear(lot: Lot, angle: float, green: float) -> None:
-    """Parts of the lawn that are drier, greener or trodden."""
+    """Paint parts of the lawn that are drier, greener or worn."""
     site, rng = lot.site, lot.site.rng
     for _ in range(int(rng.integers(2, 6))):
         dryness = np.clip(0.12 + 0.75 * green + rng.normal(0, 0.22), 0.0, 1.0)
@@ -119,7 +119,7 @@ def _pave(lot: Lot, at: tuple[float, float], half: tuple[float, float], garage: 
     paint.polygon(floor, Cover.GRAVEL)
     width = garage if garage > 0 else 2.9
     right = y + b + 0.2
-    # A drive without a garage ends beside the house.
+    # A driveway without a garage ends next to the house.
     end = setback + (0.4 if garage > 0 else a)
     kind = (Cover.DRIVEWAY, Cover.PAVERS, Cover.YARD, Cover.GRAVEL)[
         int(rng.choice(4, p=[0.4, 0.25, 0.2, 0.15]))
@@ -147,7 +147,7 @@ def _pave(lot: Lot, at: tuple[float, float], half: tuple[float, float], garage: 
 
 
 def _enclose(lot: Lot, front: float) -> None:
-    """A fence or hedge on the right and, of one of two neighbours, at the back."""
+    """Add a fence or hedge on the right and, for one of two neighbours, at the back."""
     site, rng, edge = lot.site, lot.site.rng, lot.width / 2
     line = lot.line((front, edge), (lot.depth, edge))
     if lot.side > 0:
@@ -195,7 +195,7 @@ def _plant(lot: Lot, setback: float, back: float) -> None:
             BY_NAME["bush"],
             rng.uniform(0.5, 1.1),
         )
-    for _ in range(int(rng.integers(2, 7))):  # and in the bed before the house
+    for _ in range(int(rng.integers(2, 7))):  # and in the bed in front of the house
         spot = lot.frame(setback - 0.7, rng.uniform(-0.42, 0.3) * lot.width)
         site.plant(spot, BY_NAME["bush"], rng.uniform(0.35, 0.6))
 
@@ -227,7 +227,7 @@ def _live(lot: Lot, back: float, y: float) -> None:
 
 
 def grow_meadow(lot: Lot) -> None:
-    """A lot that nobody has built on: long grass, a trodden path, trees and bushes."""
+    """An unbuilt lot: long grass, a worn path, trees and bushes."""
     site, rng, edge = lot.site, lot.site.rng, lot.width / 2
     site.painter.plot(0.0, rng.uniform(0.3, 0.8), tuple(rng.uniform(0.9, 1.1, 3)))
     site.painter.polygon(lot.rectangle((0.0, -edge), (lot.depth, edge)), Cover.MEADOW)

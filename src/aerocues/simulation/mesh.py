@@ -1,4 +1,4 @@
-"""Triangles of a scene, and how they are put together object by object."""
+"""Triangles of a scene, collected object by object."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Mesh:
     surface : (T,) int32
         Row of the triangle in `kinds` and `colours`.
     kinds : (S,) int32
-        What a surface is made of, a `Material`.
+        `Material` of each surface.
     colours : (S, 3) float32
-        Its linear reflectance.
+        Linear reflectance of each surface.
     objects : (O, 2) int32
-        First triangle of each object and the one behind its last; what is culled as one.
+        First triangle and end of the triangles of each object; objects are culled as a whole.
     corners : (O, 2) int32
-        The same of its vertices.
+        First vertex and end of the vertices of each object.
     """
 
     vertices: NDArray[np.float32]
@@ -44,9 +44,9 @@ class Mesh:
 
 @dataclass
 class MeshBuilder:
-    """Collects triangles; positions are north, east and *height* (up), as buildings are thought of.
+    """Collects triangles; positions are north, east and *height* (up).
 
-    `finish_object` ends an object: what was added since the last one.
+    `finish_object` ends an object: everything added since the previous one.
     """
 
     _vertices: list[NDArray[np.float32]] = field(default_factory=list)
@@ -58,13 +58,13 @@ class MeshBuilder:
     _count_triangles: int = 0
 
     def surface(self, kind: int, colour: Colour) -> int:
-        """The number of a surface, the same for the same material and colour."""
+        """The number of a surface; the same for equal material and colour."""
         return self._surfaces.setdefault((int(kind), colour), len(self._surfaces))
 
     def add(
         self, points: Points, triangles: NDArray[np.int64], surface: int | NDArray[np.int32]
     ) -> None:
-        """Add triangles (M, 3), rows of `points` (N, 3), with a surface each or for all."""
+        """Add triangles (M, 3), rows of `points` (N, 3), with one surface for each or for all."""
         self._vertices.append(points.astype(np.float32))
         self._triangles.append((triangles + self._count).astype(np.int32))
         rows = np.empty(len(triangles), np.int32)
@@ -74,17 +74,17 @@ class MeshBuilder:
         self._count_triangles += len(triangles)
 
     def quad(self, corners: Points, surface: int) -> None:
-        """Add a quadrilateral, (4, 3) corners in turn."""
+        """Add a quadrilateral with (4, 3) corners in order."""
         self.add(corners, np.array([[0, 1, 2], [0, 2, 3]]), surface)
 
     def finish_object(self) -> int:
-        """End an object; its number, or that of the last one if nothing was added."""
+        """End an object and return its number; the previous number if nothing was added."""
         if self._ends[-1] != (self._count_triangles, self._count):
             self._ends.append((self._count_triangles, self._count))
         return len(self._ends) - 2
 
     def build(self) -> Mesh:
-        """All that was added."""
+        """The mesh of everything added."""
         self.finish_object()
         vertices = np.concatenate(self._vertices)
         vertices[:, 2] *= -1.0

@@ -1,4 +1,4 @@
-"""What a drone writes into its images: EXIF with GPS, and DJI's XMP with the gimbal's angles."""
+"""Metadata as drones write it: EXIF with GPS, and DJI's XMP with gimbal angles."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ _FOCAL_LENGTH, _PLANE_X, _PLANE_Y, _PLANE_UNIT, _FOCAL_35 = 37386, 41486, 41487,
 _WIDTH, _HEIGHT = 40962, 40963
 _CENTIMETRE = 3
 _REQUIRED = {282: 72.0, 283: 72.0, 296: 2, 531: 1}
-"""What EXIF asks of every image: resolution in pixels an inch, position of the chroma samples."""
+"""Tags that EXIF requires of every image: pixels per inch, position of the chroma samples."""
 
 _REQUIRED_OF_CAMERA = {36864: b"0232", 37121: b"\x01\x02\x03\x00", 40960: b"0100", 40961: 1}
-"""And of its camera: versions of EXIF and FlashPix, components, the colour space sRGB."""
+"""Tags that EXIF requires of cameras: versions of EXIF and FlashPix, components, colour space."""
 
 _SENSOR_WIDTH = 36.0
-"""Millimetres; pixels then give the focal length as on 35 mm film."""
+"""Millimetres, so that the focal length equals the one on 35 mm film."""
 
+# JPEG quality: higher has fewer artefacts and larger files.
 _QUALITY = 95
 _XMP = """<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>
 <x:xmpmeta xmlns:x="adobe:ns:meta/">
@@ -36,10 +37,10 @@ _XMP = """<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>
 
 
 def gimbal_angles(pose: Pose) -> tuple[float, float, float]:
-    """Pitch, yaw and roll in degrees as a gimbal has them: pitch from -90 to 90.
+    """Pitch, yaw and roll in degrees in the convention of gimbals: pitch from -90 to 90.
 
-    Beyond the nadir the camera hangs upside down and looks the other way: pitch -120 and yaw y are
-    pitch -60, yaw y + 180, roll 180.
+    Beyond the nadir the camera is upside down and faces the opposite direction: pitch -120 and yaw
+    y are pitch -60, yaw y + 180, roll 180.
     """
     pitch, yaw, roll = pose.pitch, pose.yaw, pose.roll
     if pitch < -90.0:
@@ -59,9 +60,9 @@ def write_image(
     pose: Pose,
     gps: GpsPosition,
 ) -> None:
-    """Write a PNG or JPEG file, as the suffix says, with its metadata.
+    """Write a PNG or JPEG file, depending on the suffix, with its metadata.
 
-    It is written beside its place and renamed, so that there is never half an image.
+    It is written to a temporary file and renamed, so that there is never a partial image.
     """
     from PIL import Image, PngImagePlugin
 
@@ -113,7 +114,7 @@ def _exif(camera: PinholeCamera, gps: GpsPosition) -> Any:
 
 
 def _sexagesimal(degrees: float) -> tuple[Any, Any, Any]:
-    """Degrees, minutes and seconds; seconds over a million: 0.03 mm on the ground."""
+    """Degrees, minutes and seconds; seconds in millionths, 0.03 mm on the ground."""
     from PIL.TiffImagePlugin import IFDRational
 
     micro = round(degrees * 3600 * 10**6)

@@ -1,7 +1,7 @@
-"""Value noise in the world's plane whose octaves fade out before a pixel could alias them.
+"""Value noise in the world's plane, with octaves that fade out before they would alias.
 
-A point has the same value in every view, as far as the view resolves it; that is what makes
-matches between rendered images possible and exact.
+A point has the same value in every view, as far as the view resolves it. Therefore rendered images
+can be matched exactly.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from aerocues.compiled import compiled
 
 @compiled
 def hashed(i: int, j: int, k: int) -> float:
-    """A number in [0, 1) that three integers determine."""
+    """A pseudo-random number in [0, 1) from three integers."""
     mixed = (i * 374761393 + j * 668265263 + k * 1442695041) & 0xFFFFFFFF
     mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0xFFFFFFFF
     mixed = ((mixed ^ (mixed >> 15)) * 1103515245) & 0xFFFFFFFF
@@ -22,7 +22,7 @@ def hashed(i: int, j: int, k: int) -> float:
 
 @compiled
 def value_noise(x: float, y: float, seed: int) -> float:
-    """Smooth noise in [-1, 1] whose lattice has the unit as its side."""
+    """Smooth noise in [-1, 1] on a unit lattice."""
     floor_x, floor_y = math.floor(x), math.floor(y)
     i, j = int(floor_x), int(floor_y)
     u, v = x - floor_x, y - floor_y
@@ -34,7 +34,10 @@ def value_noise(x: float, y: float, seed: int) -> float:
 
 @compiled
 def resolved(wavelength: float, footprint: float) -> float:
-    """How much of a structure a pixel can show: 0 up to 1.5 footprints, 1 from 4."""
+    """Share of a structure that pixels resolve: 0 up to 1.5 footprints, 1 from 4.
+
+    Octaves near the size of a pixel were half aliased with lower limits.
+    """
     return min(max(0.4 * (wavelength / footprint - 1.5), 0.0), 1.0)
 
 
@@ -49,11 +52,11 @@ def fractal_noise(
     x, y : float
         Position in metres.
     longest, shortest : float
-        Wavelengths in metres; each octave has half of the one before.
+        Wavelengths in metres; each octave has half the wavelength of the previous one.
     gain : float
-        Amplitude of an octave over that of the one before; the first has 1.
+        Amplitude of an octave relative to the previous one; the first has 1.
     footprint : float
-        Side of a pixel on the surface in metres; shorter octaves fade to their mean, 0.
+        Side of a pixel on the surface in metres; shorter octaves fade out.
     seed : int
     """
     total, amplitude, wavelength = 0.0, 1.0, longest
@@ -62,7 +65,7 @@ def fractal_noise(
         if share <= 0.0:
             break
         total += amplitude * share * value_noise(x / wavelength, y / wavelength, seed)
-        # Turned from octave to octave: aligned lattices would show as a grid.
+        # Each octave is rotated: aligned lattices would be visible as a grid.
         x, y = 0.8 * x - 0.6 * y + 17.3, 0.6 * x + 0.8 * y - 9.1
         amplitude *= gain
         wavelength *= 0.5
@@ -72,7 +75,7 @@ def fractal_noise(
 
 @compiled
 def changing_noise(x: float, y: float, u: float, v: float, seed: int) -> float:
-    """Smooth noise as `value_noise` that is another one wherever `u` or `v` grow by one."""
+    """Smooth noise like `value_noise` that also varies with `u` and `v`, per unit."""
     first, second = math.floor(u), math.floor(v)
     total = 0.0
     for i in range(2):

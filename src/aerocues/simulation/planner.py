@@ -1,4 +1,4 @@
-"""Surveys from the terms of a mission: area, altitude or ground sampling distance, overlaps."""
+"""Plans surveys from missions: area, altitude or ground sampling distance, overlaps."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ PATTERNS = ("nadir", "oblique", "double", "orbit")
 
 @dataclass(frozen=True)
 class Mission:
-    """What is to be flown; the area is centred at the origin.
+    """A mission; its area is centred at the origin.
 
     Parameters
     ----------
     pattern : str
-        ``nadir`` or ``oblique``: parallel lines, north and back; ``double``: the same and lines
-        across; ``orbit``: a circle around the area that looks at its centre.
+        ``nadir`` or ``oblique``: parallel lines, north and back; ``double``: also lines across;
+        ``orbit``: a circle around the area, facing its centre.
     north, east : float
         Extent of the area in metres.
     altitude : float or None
         Metres above the origin.
     gsd : float or None
-        Centimetres on the ground in a pixel, looking straight down, in place of the altitude.
+        Ground sampling distance at the nadir in centimetres per pixel, in place of the altitude.
     front, side : float
-        Overlap of consecutive images and of neighbouring lines, 0 to below 1.
+        Overlap of consecutive images and of neighbouring lines, at least 0 and below 1.
     pitch : float
-        Of the camera in ``oblique`` and ``orbit``, degrees.
+        Pitch of the camera in ``oblique`` and ``orbit``, degrees.
     """
 
     pattern: str = "nadir"
@@ -50,13 +50,15 @@ class Mission:
 
     def __post_init__(self) -> None:
         if self.pattern not in PATTERNS:
-            raise SimulationError(f"pattern '{self.pattern}' is none of {', '.join(PATTERNS)}")
+            raise SimulationError(
+                f"pattern must be one of {', '.join(PATTERNS)}, got {self.pattern!r}"
+            )
         if (self.altitude is None) == (self.gsd is None):
-            raise SimulationError("a mission needs an altitude or a gsd, and not both; give one")
+            raise SimulationError("a mission needs either altitude or gsd")
         if not (0 <= self.front < 1 and 0 <= self.side < 1):
-            raise SimulationError("overlaps are parts of an image; give 0 or more, less than 1")
+            raise SimulationError("front and side must be at least 0 and below 1")
         if min(self.north, self.east, self.altitude or 1.0, self.gsd or 1.0) <= 0:
-            raise SimulationError("area, altitude and gsd are lengths; give more than 0")
+            raise SimulationError("north, east, altitude and gsd must be above 0")
 
     def height(self, camera: PinholeCamera) -> float:
         """Metres above the origin."""
@@ -86,7 +88,7 @@ def plan(mission: Mission, camera: PinholeCamera, name: str = "mission") -> Surv
 
 
 def _spread(extent: float, step: float) -> list[float]:
-    """Positions at most `step` apart that reach from one end of the extent to the other."""
+    """Positions at most `step` apart over the whole extent."""
     count = math.ceil(extent / step - 1e-9) + 1
     return [float(at) for at in np.linspace(-extent / 2, extent / 2, count)]
 
@@ -115,7 +117,7 @@ def open_survey(spec: str, camera: PinholeCamera) -> Survey:
     Raises
     ------
     SimulationError
-        If it is neither, or the file's content makes no sense.
+        If it is neither, or the file is not a valid mission.
     """
     if spec.lower() in SURVEYS or not Path(spec).is_file():
         return survey_called(spec)
@@ -127,11 +129,11 @@ def _read_mission(file: Path) -> Mission:
     known = ", ".join(names)
     terms = read_json(file, "the mission", SimulationError, f"give a JSON file with {known}")
     if not isinstance(terms, dict):
-        raise SimulationError(f"{file} is no mission: it must hold an object with {known}")
+        raise SimulationError(f"{file} is not a mission: it must be an object with {known}")
     unknown = [name for name in terms if name not in names]
     if unknown:
-        raise SimulationError(f"{file}: {', '.join(unknown)} is unknown; use {known}")
+        raise SimulationError(f"{file} has the unknown fields {', '.join(unknown)}; use {known}")
     try:
         return Mission(**terms)
     except (ValueError, TypeError) as error:
-        raise SimulationError(f"{file} is no mission ({error}); use {known}") from error
+        raise SimulationError(f"{file} is not a mission ({error}); use {known}") from error

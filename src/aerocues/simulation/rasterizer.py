@@ -1,4 +1,4 @@
-"""Which triangle is seen at each sample: a z-buffer, for central and for parallel projection."""
+"""A z-buffer for central and parallel projection: the visible triangle at each sample."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from aerocues.datasets.dataset import PinholeCamera
 from aerocues.simulation.mesh import Mesh
 
 NEAR = 0.2
-"""Metres along the axis; what is nearer to the camera is cut off."""
+"""Near plane in metres along the axis; closer surfaces are clipped."""
 
 NOTHING = -1
 Corner = tuple[float, float, float]
@@ -27,7 +27,7 @@ def _fill(
     nearness: NDArray[np.float32],
     ids: NDArray[np.int32],
 ) -> None:
-    """Enter a triangle whose corners are column, row and nearness, which is linear in both."""
+    """Draw a triangle; corners are column, row and nearness, which is linear in both."""
     height, width = nearness.shape
     first_x = max(math.ceil(min(a[0], b[0], c[0])), 0)
     last_x = min(math.floor(max(a[0], b[0], c[0])), width - 1)
@@ -61,7 +61,7 @@ def _fill(
 
 @compiled
 def _cut(inside: Corner, outside: Corner) -> Corner:
-    """Where an edge in camera coordinates meets the near plane."""
+    """The intersection of an edge in camera coordinates with the near plane."""
     part = (NEAR - inside[2]) / (outside[2] - inside[2])
     return (
         inside[0] + part * (outside[0] - inside[0]),
@@ -80,7 +80,7 @@ def _draw_clipped(
     nearness: NDArray[np.float32],
     ids: NDArray[np.int32],
 ) -> None:
-    """Project a triangle in camera coordinates, without what lies before the near plane."""
+    """Project a triangle in camera coordinates, clipped at the near plane."""
     count = int(a[2] >= NEAR) + int(b[2] >= NEAR) + int(c[2] >= NEAR)
     if count == 0:
         return
@@ -129,7 +129,7 @@ def _outside(
     centre: NDArray[np.float64],
     slopes: tuple[float, float, float, float],
 ) -> bool:
-    """Whether a box lies wholly on the far side of a side of the viewing pyramid."""
+    """Whether a box is completely outside one side of the viewing pyramid."""
     left = right = above = below = behind = 0
     for corner in range(8):
         x = box[corner & 1, 0] - centre[0]
@@ -201,7 +201,7 @@ def _draw_parallel(
 
 
 def boxes_of(mesh: Mesh) -> NDArray[np.float32]:
-    """Least and greatest coordinates of each object, (O, 2, 3) float32."""
+    """Minimum and maximum coordinates of each object, (O, 2, 3) float32."""
     starts = mesh.corners[:, 0]
     return np.stack(
         [np.minimum.reduceat(mesh.vertices, starts), np.maximum.reduceat(mesh.vertices, starts)], 1
@@ -215,16 +215,16 @@ def visible(
     rotation: NDArray[np.float64],
     centre: NDArray[np.float64],
 ) -> NDArray[np.int32]:
-    """The triangle at the centre of each pixel of a camera, (H, W) int32; -1 where there is none.
+    """The visible triangle at the centre of each pixel, (H, W) int32; -1 if there is none.
 
     Parameters
     ----------
     mesh : Mesh
     boxes : (O, 2, 3) float32
-        As `boxes_of` gives them.
+        See `boxes_of`.
     camera : PinholeCamera
     rotation, centre : (3, 3) and (3,) float64
-        From the world to the camera, and the camera's position.
+        Rotation from the world to the camera, and position of the camera.
     """
     ids = np.full((camera.height, camera.width), NOTHING, np.int32)
     lens = (camera.focal_x, camera.focal_y, camera.centre_x, camera.centre_y)
@@ -244,7 +244,7 @@ def visible(
 
 
 def nearest(mesh: Mesh, frame: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float32]:
-    """Nearness of what parallel rays meet first, (H, W) float32; -inf where they meet nothing.
+    """Nearness of the first surface on parallel rays, (H, W) float32; -inf if there is none.
 
     Parameters
     ----------

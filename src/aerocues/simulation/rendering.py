@@ -1,4 +1,4 @@
-"""From triangles at samples to linear colour and exact depth at pixels."""
+"""Renders linear colour and exact depth of pixels from the visible triangles."""
 
 from __future__ import annotations
 
@@ -20,21 +20,22 @@ from aerocues.simulation.rasterizer import boxes_of, visible
 from aerocues.simulation.surfaces import Material, Rgb, object_colour, scaled
 
 SAMPLES = 2
-"""A pixel's visibility is sampled at this many points along each of its sides."""
+"""Visibility samples per side of a pixel: more make smoother edges, and the time of rasterisation
+grows with the square."""
 
 Lens = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """What an ideal camera sees.
+    """The image of an ideal camera.
 
     Parameters
     ----------
     radiance : (H, W, 3) float32
-        Linear red, green, blue; a white surface in full sun has about 2.5.
+        Linear red, green, blue; about 2.5 for a white surface in full sun.
     depth : (H, W) float32
-        Metres along the viewing axis of what lies at the centre of each pixel; infinite in the sky.
+        Metres along the viewing axis at the centre of each pixel; infinite in the sky.
     """
 
     radiance: NDArray[np.float32]
@@ -43,13 +44,13 @@ class Rendering:
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """All that is needed to take pictures of one moment.
+    """Everything needed to render images of one moment.
 
     Parameters
     ----------
     mesh : Mesh
     boxes : (O, 2, 3) float32
-        Around the objects of the mesh.
+        Bounding boxes of the objects of the mesh.
     plan : Plan
     light : Light
     """
@@ -66,7 +67,7 @@ class Stage:
 
 
 def render(stage: Stage, camera: PinholeCamera, pose: Pose) -> Rendering:
-    """Render a view: visibility at 2 x 2 samples a pixel, shading once a pixel and surface."""
+    """Render a view: 2 x 2 visibility samples per pixel, shading once per pixel and surface."""
     mesh, rotation, centre = stage.mesh, pose.rotation, pose.centre
     fine = enlarged(camera, SAMPLES)
     samples = visible(mesh, stage.boxes, fine, rotation, centre)
@@ -107,7 +108,7 @@ def _ray(rotation: NDArray[np.float64], lens: Lens, column: float, row: float) -
 def _plane(
     vertices: NDArray[np.float32], triangles: NDArray[np.int32], triangle: int
 ) -> tuple[float, float, float, float]:
-    """Normal (north, east, down; of unit length) and its product with a point of the plane."""
+    """Unit normal (north, east, down), and its scalar product with a point of the plane."""
     i, j, k = triangles[triangle]
     ux = np.float64(vertices[j, 0]) - vertices[i, 0]
     uy = np.float64(vertices[j, 1]) - vertices[i, 1]
@@ -177,7 +178,7 @@ def _seen(
     at = centre[0] + depth * ray[0], centre[1] + depth * ray[1], -(centre[2] + depth * ray[2])
     length = math.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
     slant = (plane[0] * ray[0] + plane[1] * ray[1] + plane[2] * ray[2]) / length
-    # Outward is where the camera is; up is the opposite of down.
+    # The normal points to the side of the camera; up is the opposite of down.
     side = -1.0 if slant > 0 else 1.0
     normal = side * plane[0], side * plane[1], -side * plane[2]
     footprint = depth / lens[0] / math.sqrt(max(abs(slant), 0.05))
@@ -212,7 +213,7 @@ def _shade(
     lens: Lens,
     radiance: NDArray[np.float32],
 ) -> None:
-    """Shade each pixel once for each surface in it, where the samples of that surface lie."""
+    """Shade each pixel once for each surface in it, at the centre of the surface's samples."""
     height, width = radiance.shape[:2]
     count = SAMPLES * SAMPLES
     for row in range(height):

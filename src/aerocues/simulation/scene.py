@@ -1,4 +1,4 @@
-"""A scene: everything in it, and how it stands at a moment."""
+"""A scene, and its state at a moment."""
 
 from __future__ import annotations
 
@@ -11,23 +11,24 @@ from numpy.typing import NDArray
 from aerocues.simulation.ground import Plan, Terrain
 from aerocues.simulation.mesh import Mesh
 
+# Seconds of one sway of the trees; images at intervals of multiples of it would show no motion.
 _WIND_PERIOD = 2.7
 
 
 @dataclass(frozen=True)
 class Route:
-    """A straight stretch of street on which a car drives to and fro between two moments.
+    """A straight part of a street on which a car drives repeatedly.
 
     Parameters
     ----------
     member : int
         Number of the car's object in the mesh.
     north, east : float
-        Direction times speed, metres a second.
+        Velocity in metres per second.
     length : float
-        Metres after which it starts again where it came from.
+        Length in metres, after which the car starts again.
     start : float
-        Metres it has behind it at time 0.
+        Position in metres at time 0.
     """
 
     member: int
@@ -39,7 +40,7 @@ class Route:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A scene as built from its seed.
+    """A scene built from a seed.
 
     Parameters
     ----------
@@ -49,11 +50,11 @@ class Scene:
     plan : Plan
     terrain : Terrain
     half : float
-        Details reach so many metres from the origin to the north, south, east and west.
+        Extent of the details from the origin to each side, in metres.
     routes : tuple of Route
-        Of the cars that drive.
+        Routes of the moving cars.
     leafy : (T,) bool
-        Triangles that the wind moves.
+        Whether the wind moves a triangle.
     """
 
     name: str
@@ -65,7 +66,7 @@ class Scene:
     leafy: NDArray[np.bool_]
 
     def at(self, time: float, wind: float = 0.0) -> Mesh:
-        """The mesh after so many seconds, in a wind that moves crowns by so many metres."""
+        """The mesh after `time` seconds, in a wind that moves crowns by `wind` metres."""
         if time == 0.0 and wind == 0.0:
             return self.mesh
         vertices = self.mesh.vertices.copy()

@@ -1,4 +1,4 @@
-"""The kinds of scene, as a table, and how one is made ready for pictures."""
+"""The kinds of scene: one row each, and their preparation for rendering."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from aerocues.simulation.scene import Scene
 from aerocues.simulation.suburb import build_suburb
 
 HALF = 380.0
-"""Details reach so far from the origin by default: as far as oblique cameras at 140 m see."""
+"""Default extent of details from the origin in metres: as far as oblique cameras at 140 m see."""
 
 
 @dataclass(frozen=True)
 class SceneKind:
-    """One row of the table: a name, what it shows and a function of the seed and the half size."""
+    """One row: name, description, and a function of the seed and the extent."""
 
     name: str
     description: str
@@ -37,15 +37,15 @@ _KINDS = {kind.name: kind for kind in SCENES}
 
 
 def build_scene(name: str, seed: int = 0, half: float = HALF) -> Scene:
-    """Build a scene; the same name, seed and size give the same scene.
+    """Build a scene; the same name, seed and extent give the same scene.
 
     Parameters
     ----------
     name : str
-        Of a row of `SCENES`.
+        Name of a row of `SCENES`.
     seed : int
     half : float
-        Metres from the origin to each side that have details; beyond is simple ground.
+        Extent of the details from the origin to each side in metres; outside is simple ground.
 
     Raises
     ------
@@ -57,13 +57,13 @@ def build_scene(name: str, seed: int = 0, half: float = HALF) -> Scene:
 
 
 def require_scene(name: str) -> None:
-    """Raise SimulationError where there is no scene of this name."""
+    """Raise SimulationError if there is no scene of this name."""
     if name not in _KINDS:
         raise SimulationError(f"there is no scene '{name}'; use {', '.join(_KINDS)}")
 
 
 def stage(scene: Scene, weather: Weather, time: float = 0.0, wind: float = 0.0) -> Stage:
-    """Bake the light of a scene as it stands after so many seconds, in a wind."""
+    """Bake the light of a scene after `time` seconds, in a wind."""
     centres = ground_centres(scene.half)
     heights = scene.terrain.height(centres.reshape(-1, 2)).reshape(centres.shape[:2])
     mesh = scene.at(time, wind)

@@ -1,4 +1,4 @@
-"""From radiance to the bytes of a picture: lens, exposure, noise, tone curve."""
+"""Converts radiance to an 8-bit image: lens, exposure, noise, tone curve."""
 
 from __future__ import annotations
 
@@ -9,31 +9,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 _FULL_WELL = 9000.0
-"""Electrons of a pixel that is just white: a small sensor's."""
+"""Electrons of a white pixel, typical of a small sensor: fewer give more photon noise."""
 
+# Electrons of read noise: higher values add noise in shadows.
 _READ_NOISE = 4.0
+# Signal of a radiance of 1 (white is 1): higher values brighten the image and clip sunlit roofs.
 _EXPOSURE = 0.82
+# Signal above which highlights are compressed: lower values keep more detail in them, with less
+# contrast.
 _SHOULDER = 0.72
+# Share of the contrast curve in the tone curve: higher values darken shadows and brighten lights.
 _CONTRAST = 0.45
 
 
 @dataclass(frozen=True)
 class Sensor:
-    """How a camera departs from an ideal one.
+    """Imperfections of a camera.
 
     Parameters
     ----------
     noise : float
-        Standard deviation of photon and read noise over that of a small sensor at base
-        sensitivity; 0 for none.
+        Standard deviation of photon and read noise relative to a small sensor at base sensitivity;
+        0: none.
     blur : float
-        Standard deviation in pixels of the lens's point spread.
+        Standard deviation of the point spread of the lens, in pixels.
     motion : float
-        Pixels that the picture moves along its columns during the exposure.
+        Motion along the columns during the exposure, in pixels.
     vignetting : float
-        Part of the light that the corners lose.
+        Share of the light lost in the corners.
     exposure_jitter : float
-        Standard deviation of the exposure from frame to frame, in stops.
+        Standard deviation of the exposure between frames, in stops.
     """
 
     noise: float = 1.0
@@ -46,7 +51,7 @@ class Sensor:
 def develop(
     radiance: NDArray[np.float32], sensor: Sensor, rng: np.random.Generator
 ) -> NDArray[np.uint8]:
-    """Take the picture.
+    """Develop an image from radiance.
 
     Parameters
     ----------
@@ -54,7 +59,7 @@ def develop(
         Linear red, green, blue.
     sensor : Sensor
     rng : numpy.random.Generator
-        Of the frame: its noise and its exposure.
+        For the noise and the exposure of the frame.
 
     Returns
     -------
@@ -88,7 +93,7 @@ def _optics(radiance: NDArray[np.float32], sensor: Sensor) -> Any:
 
 
 def _streak(length: float) -> NDArray[np.float32]:
-    """A vertical box of a length in pixels, sampled with its exact coverage."""
+    """A vertical box filter of a length in pixels, with exact coverage."""
     reach = int(np.ceil((length - 1) / 2)) if length > 1 else 1
     rows = np.arange(-reach, reach + 1)
     cover = np.clip(np.minimum(rows + 0.5, length / 2) - np.maximum(rows - 0.5, -length / 2), 0, 1)
@@ -96,13 +101,13 @@ def _streak(length: float) -> NDArray[np.float32]:
 
 
 def tone(signal: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Linear signal (1: white of the sensor) to 8 bits: sRGB with a soft shoulder."""
+    """Linear signal (1 is white) to 8 bits: sRGB with compressed highlights."""
     linear = np.maximum(signal, 0.0)
     high = linear > _SHOULDER
     rest = 1 - _SHOULDER
     rolled = np.where(high, _SHOULDER + rest * (1 - np.exp(-(linear - _SHOULDER) / rest)), linear)
     coded = np.where(rolled <= 0.0031308, 12.92 * rolled, 1.055 * rolled ** (1 / 2.4) - 0.055)
-    # Cameras deepen shadows and lift lights: a smooth step mixed in.
+    # Cameras increase contrast: a smooth step is mixed in.
     coded = np.clip(coded, 0, 1)
     coded = (1 - _CONTRAST) * coded + _CONTRAST * coded * coded * (3 - 2 * coded)
     return np.asarray(np.rint(coded * 255), np.uint8)

@@ -1,4 +1,4 @@
-"""Simple solids in a frame of their own: boxes, roofs, cylinders."""
+"""Simple solids in local frames: boxes, roofs, cylinders."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _BOX_FACES = np.array(
 
 @dataclass(frozen=True)
 class Frame:
-    """Axes of an object: x ahead, y to its right, z up.
+    """A local frame: x forward, y to the right, z up.
 
     Parameters
     ----------
     north, east, height : float
-        Where its origin lies, metres.
+        Origin in metres.
     heading : float
-        Direction of x in radians from north over east.
+        Direction of x in radians clockwise from north.
     """
 
     north: float
@@ -55,7 +55,7 @@ class Frame:
         )
 
     def outline(self, points: list[tuple[float, float]]) -> Points:
-        """World positions (north, east) of local ones."""
+        """World positions (north, east) of local positions."""
         flat = np.column_stack([np.array(points, np.float64), np.zeros(len(points))])
         return self.place(flat)[:, :2]
 
@@ -64,7 +64,7 @@ class Frame:
         return self.outline([low, (high[0], low[1]), high, (low[0], high[1])])
 
     def at(self, x: float, y: float, z: float = 0.0, turn: float = 0.0) -> Frame:
-        """A frame whose origin lies at a local point, turned by radians."""
+        """A frame at a local point, rotated by `turn` radians."""
         north, east, height = self.place(np.array([[x, y, z]]))[0]
         return Frame(float(north), float(east), float(height), self.heading + turn)
 
@@ -77,7 +77,7 @@ def add_box(
     surface: int,
     taper: float = 0.0,
 ) -> None:
-    """Add a box without its bottom; `taper` metres are taken off each side of its top."""
+    """Add a box without bottom; each side of its top is `taper` metres shorter."""
     corners = [
         (x + inward * tx, y + inward * ty, z)
         for z, inward in ((low[2], 0.0), (high[2], taper))
@@ -111,9 +111,9 @@ def add_roof(
     eaves, rise : float
         Height of the eaves, and of the ridge above them.
     hip : float
-        How far the ends of the ridge stand back from the ends of the roof.
+        Distance from the ends of the roof to the ends of the ridge.
     surfaces : tuple of int
-        Of the slopes, the gables and the fascia.
+        Surfaces of slopes, gables and fascia.
     """
     a, b = half
     corners = [(-a, -b), (a, -b), (a, b), (-a, b)]
@@ -128,7 +128,7 @@ def add_roof(
     for i in range(4):
         j = (i + 1) % 4
         builder.quad(np.stack([placed[i], placed[j], below[j], below[i]]), surfaces[2])
-    # The ridge is capped.
+    # The cap of the ridge.
     cap = frame.at(0.0, 0.0)
     add_box(
         builder,
@@ -148,7 +148,7 @@ def add_pole(
     sides: int = 6,
     sink: float = 0.4,
 ) -> None:
-    """Add an upright cone frustum that begins `sink` metres below the frame's origin."""
+    """Add an upright cone frustum from `sink` metres below the origin of the frame."""
     around = np.arange(sides) * 2 * math.pi / sides
     ring = np.column_stack([np.cos(around), np.sin(around)])
     points = np.concatenate(

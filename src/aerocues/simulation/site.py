@@ -1,4 +1,4 @@
-"""What every scene is built on: ground, streets, trees, and where each may stand."""
+"""The base of all scenes: ground, streets and trees, and the rules for placing them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SOFT = frozenset({Cover.LAWN, Cover.MEADOW, Cover.SOIL})
 
 @dataclass
 class Site:
-    """A scene in the making; positions on its grid of streets are bent into the world's."""
+    """A scene under construction; positions on the street grid are bent to world positions."""
 
     name: str
     rng: np.random.Generator
@@ -46,7 +46,7 @@ class Site:
         add_terrain(self.builder, self.terrain, self.half)
 
     def frame(self, u: float, v: float, direction: float, turn: float = 0.0) -> Frame:
-        """A frame on the ground at a position of the grid, looking along a direction of it."""
+        """A frame on the ground at a position and direction of the grid."""
         north, east = self.bend.place(np.array([[u, v]]))[0]
         return self.grounded(north, east, self.bend.heading(u, v, direction) + turn)
 
@@ -62,7 +62,7 @@ class Site:
         return Frame(float(north), float(east), height, heading)
 
     def detail(self, frame: Frame) -> float:
-        """Part of the leaves that is drawn: what the cameras fly over gets all of them."""
+        """Share of the leaves to draw: all where the cameras fly, fewer further away."""
         distance = math.hypot(frame.north, frame.east)
         return 1.0 if distance < 210 else 0.5 if distance < 300 else 0.25
 
@@ -76,7 +76,7 @@ class Site:
         return self.bend.place(np.concatenate(sides))
 
     def plant(self, frame: Frame, kind: TreeKind | None = None, scale: float = 1.0) -> bool:
-        """Plant a tree where the ground is soft and no wall is near; whether it was."""
+        """Plant a tree if the ground is soft and no wall is near; return whether it was planted."""
         kind = kind or self.nursery.any_kind()
         clear = 0.0 if kind.name == "bush" else 0.22 * kind.spread * kind.height[1] * scale
         for step in range(9):
@@ -91,7 +91,7 @@ class Site:
         return True
 
     def line_streets(self, trees: bool) -> None:
-        """Trees and lamps in the verges; cars that park and cars that drive."""
+        """Add trees and lamps to the verges, and parked and moving cars."""
         for way, lines in ((True, self.grid.columns), (False, self.grid.rows)):
             direction = 0.0 if way else math.pi / 2
             for at in lines:
@@ -107,7 +107,7 @@ class Site:
         self, way: bool, at: float, along: float, side: float, direction: float, trees: bool
     ) -> None:
         def on_grid(offset: float) -> tuple[float, float]:
-            # Right of a street to the north is east; right of one to the east is south.
+            # The right side of a northbound street is east, of an eastbound street south.
             return (along, at + offset) if way else (at - offset, along)
 
         others = self.grid.rows if way else self.grid.columns
@@ -138,7 +138,7 @@ class Site:
         self.routes.append(Route(member, north, east, 30.0, self.rng.uniform(0, 5)))
 
     def paint_streets(self) -> None:
-        """Paint the streets over what was painted before."""
+        """Paint the streets over the earlier covers."""
         paint_streets(self.painter, self.grid, self.bend, self.rng)
 
     def finish(self) -> Scene:

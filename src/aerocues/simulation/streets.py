@@ -1,4 +1,4 @@
-"""Streets on a grid that bends a little: carriageways, kerbs, verges, pavements, markings."""
+"""Streets on a slightly bent grid: carriageways, kerbs, verges, pavements, markings."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from aerocues.simulation.ground import Cover, Painter
 from aerocues.simulation.mesh import Points
 
 CARRIAGEWAY, VERGE_END, RESERVE = 3.6, 5.4, 7.0
-"""Half widths in metres: of the carriageway, to the pavement, to the gardens."""
+"""Half widths in metres: the carriageway, up to the pavement, up to the gardens."""
 
 
 @dataclass(frozen=True)
 class Bend:
-    """Bends the plane: straight streets of the grid become gentle curves.
+    """Bends the plane, so that straight streets of the grid become gentle curves.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class Grid:
-    """Streets run north at each of `columns` (east) and east at each of `rows` (north)."""
+    """Northbound streets at `columns` (positions east), eastbound ones at `rows` (north)."""
 
     rows: tuple[float, ...]
     columns: tuple[float, ...]
@@ -62,7 +62,7 @@ class Grid:
         offset: float = 0.0,
         span: tuple[float, float] | None = None,
     ) -> Points:
-        """World points along a street, or beside it; `span` is a part of its length."""
+        """World points along a street at an offset; `span` limits its length."""
         start, end = span or (-self.half, self.half)
         along = np.linspace(start, end, max(int((end - start) / 3), 2))
         across = np.full_like(along, at + offset)
@@ -70,7 +70,7 @@ class Grid:
 
 
 def paint_streets(painter: Painter, grid: Grid, bend: Bend, rng: np.random.Generator) -> None:
-    """Paint all streets; junctions come out right because each layer is painted for all of them."""
+    """Paint all streets, layer by layer, so that junctions are correct."""
     streets = [(True, at) for at in grid.columns] + [(False, at) for at in grid.rows]
     angles = {way: bend.heading(0.0, 0.0, 0.0 if way else math.pi / 2) for way in (True, False)}
     for cover, half in (

@@ -1,4 +1,4 @@
-"""The scene `suburb`: houses in gardens on bent streets, parks with ponds, courts and meadows."""
+"""The scene `suburb`: houses with gardens on bent streets, parks with ponds and courts."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from aerocues.simulation.shapes import Frame
 from aerocues.simulation.site import Site
 from aerocues.simulation.streets import RESERVE, Grid
 
+# Distances of the streets in metres, east-west and north-south, and widths of the lots: blocks with
+# two rows of lots between the streets.
 _ROW, _COLUMN = 168.0, 84.0
 _LOTS = (17.0, 24.0)
 
 
 def build_suburb(seed: int, half: float) -> Scene:
-    """Build the scene; `half` metres of it lie on each side of the origin."""
+    """Build the scene; it extends `half` metres from the origin to each side."""
     rows, columns = _streets(half, _ROW, 31.0), _streets(half, _COLUMN, 22.0)
     site = Site("suburb", np.random.default_rng(seed), half, Grid(rows, columns, half))
     site.paint_streets()
@@ -92,7 +94,7 @@ def _lay_park(site: Site, low: tuple[float, float], high: tuple[float, float]) -
 
 
 def _lay_court(site: Site, frame: Frame) -> None:
-    """A tennis court in its yard, and benches beside it."""
+    """A tennis court with benches next to it."""
     paint = site.painter
     paint.polygon(frame.rectangle((-17.5, -8.8), (17.5, 8.8)), Cover.YARD)
     paint.polygon(frame.rectangle((-12.6, -6.2), (12.6, 6.2)), Cover.COURT)

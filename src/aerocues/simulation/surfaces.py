@@ -1,4 +1,4 @@
-"""What things are made of, and the pattern of each material as a function of the position."""
+"""Materials, and the pattern of each as a function of the position."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Rgb = tuple[float, float, float]
 
 
 class Material(IntEnum):
-    """What a triangle is made of."""
+    """Material of a triangle."""
 
     GROUND = 0
     TILES = 1
@@ -33,14 +33,14 @@ class Material(IntEnum):
 
 @compiled
 def scaled(colour: Rgb, factor: float) -> Rgb:
-    """A colour times a factor, never negative."""
+    """A colour times a factor, which is at least 0.02."""
     factor = max(factor, 0.02)
     return colour[0] * factor, colour[1] * factor, colour[2] * factor
 
 
 @compiled
 def mixed(first: Rgb, second: Rgb, share: float) -> Rgb:
-    """So much of the second colour, and the rest of the first."""
+    """A mixture of two colours; `share` is that of the second."""
     share = min(max(share, 0.0), 1.0)
     return (
         first[0] + share * (second[0] - first[0]),
@@ -51,12 +51,12 @@ def mixed(first: Rgb, second: Rgb, share: float) -> Rgb:
 
 @compiled
 def joint(position: float, spacing: float, width: float, footprint: float) -> float:
-    """How much of a pixel a joint of regular courses takes: its box-filtered profile."""
+    """Share of a pixel covered by joints of regular courses (box-filtered profile)."""
     reach = max(width, footprint)
     within = position / spacing - math.floor(position / spacing)
     distance = min(within, 1.0 - within) * spacing
     sharp = min(max((0.5 * (width + reach) - distance) / footprint, 0.0), 1.0) * width / reach
-    # Joints closer than the pixel are a mean shade without a pattern.
+    # Joints closer than a pixel become a mean shade without a pattern.
     share = resolved(spacing, footprint)
     return share * sharp + (1.0 - share) * width / spacing
 
@@ -71,7 +71,7 @@ def laid(
     footprint: float,
     seed: int,
 ) -> Rgb:
-    """Courses of pieces, each of its own shade, with shadowed joints.
+    """Courses of pieces, each with its own shade, and dark joints.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def laid(
     size : tuple of float
         Length and height of a piece.
     contrast : tuple of float
-        Of shades from piece to piece, and of the joints.
+        Contrast of the shades of pieces, and of the joints.
     footprint : float
         Side of a pixel in metres.
     seed : int
@@ -90,7 +90,7 @@ def laid(
     shift = 0.5 * size[0] * (int(course) & 1) + 0.3 * size[0] * hashed(int(course), 5, seed)
     piece = math.floor((u + shift) / size[0])
     own = hashed(int(piece), int(course), seed) - 0.5
-    # Three pieces together: neighbours from one pallet; seen from farther than a single piece.
+    # Groups of three pieces (from one pallet) remain visible from farther away than single pieces.
     group = hashed(int(piece) // 3, int(course) // 2, seed + 7) - 0.5
     shade = contrast[0] * own * resolved(2.0 * min(size[0], size[1]), footprint)
     shade += 0.8 * contrast[0] * group * resolved(4.0 * size[1], footprint)
@@ -160,21 +160,21 @@ def object_colour(
     kind : int
         A `Material`.
     colour : tuple of float
-        Of the surface.
+        Colour of the surface.
     triangle : int
-        Leaves differ from triangle to triangle.
+        Number of the triangle: each leaf differs.
     at, normal : tuple of float
         Position and unit normal: north, east, up.
     footprint : float
         Side of a pixel on the surface in metres.
     seed : int
-        Of the surface.
+        Seed of the surface.
     """
     x, y, height = at
     if kind == Material.LEAF:
         return _foliage(colour, triangle, x, y, height, footprint)
     level = math.hypot(normal[0], normal[1])
-    # u runs level along the surface, v up its slope: both follow from the normal alone.
+    # u is horizontal along the surface, v up the slope; both depend only on the normal.
     along = (-normal[1] / level, normal[0] / level) if level > 0.05 else (1.0, 0.0)
     u = x * along[0] + y * along[1]
     v = height / level if level > 0.05 else y

@@ -1,4 +1,4 @@
-"""Survey flights as data: where the camera stands and looks, image by image, and their names."""
+"""Survey flights as data: names and poses of all images."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ import numpy as np
 from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose
 
+# Distance of the nodes in metres, as in the thesis.
 _STEP = 40.0
 
 
 @dataclass(frozen=True)
 class Shot:
-    """One image of a survey: its path without suffix, relative to the flight's folder."""
+    """One image of a survey; its name is the path without suffix in the folder of the flight."""
 
     name: str
     pose: Pose
@@ -22,7 +23,7 @@ class Shot:
 
 @dataclass(frozen=True)
 class Survey:
-    """Images in the order in which they are taken."""
+    """Images in the order of the flight."""
 
     name: str
     shots: tuple[Shot, ...]
@@ -37,7 +38,7 @@ class Layer:
     down : float
         Metres; negative above the origin.
     nodes : int
-        Along each side; the grid is centred at the origin.
+        Nodes along each side; the grid is centred at the origin.
     step : float
         Metres between nodes.
     """
@@ -47,7 +48,7 @@ class Layer:
     step: float = _STEP
 
     def serpentine(self) -> list[tuple[float, float, int]]:
-        """North, east and number of the line of each node: north and back, line by line."""
+        """North, east and line number of each node: north and back, line by line."""
         at = (np.arange(self.nodes) - (self.nodes - 1) / 2) * self.step
         return [
             (float(north), float(east), line)
@@ -82,7 +83,7 @@ def airsimnh() -> Survey:
 
 
 def airsimnh_natural() -> Survey:
-    """Three layers flown as a drone flies: the camera looks ahead, north and back: 83 images."""
+    """Three layers as drones fly, with the camera facing forward, north and back: 83 images."""
     shots = [
         _shot(f"Layer{number}", index, Pose(north, east, layer.down, -60.0, 180.0 * (line % 2)))
         for number, layer in enumerate(_NATURAL, 1)
@@ -106,7 +107,7 @@ SURVEYS = {"airsimnh": airsimnh, "airsimnh-natural": airsimnh_natural, "mini": m
 
 
 def survey_called(name: str) -> Survey:
-    """The survey of a name of `SURVEYS`; SimulationError where there is none."""
+    """The survey of this name in `SURVEYS`; SimulationError if there is none."""
     if name.lower() not in SURVEYS:
         raise SimulationError(f"there is no survey '{name}'; use {', '.join(SURVEYS)} or a file")
     return SURVEYS[name.lower()]()

@@ -1,4 +1,4 @@
-"""Trees, bushes and hedges: lobes full of leaves around a trunk, some kinds as a table."""
+"""Trees, bushes and hedges: lobes of leaves around a trunk; kinds as a table."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from aerocues.simulation.shapes import Frame, add_pole, sphere
 from aerocues.simulation.surfaces import Material
 
 _BARK: Colour = (0.115, 0.09, 0.07)
+# Crowns per kind: more make trees more different, and take longer to build.
 _VARIANTS = 5
 
 
@@ -25,21 +26,21 @@ class TreeKind:
     ----------
     name : str
     height : tuple of float
-        Least and greatest, metres.
+        Minimum and maximum in metres.
     spread : float
-        Diameter of the crown over its height.
+        Diameter of the crown relative to the height.
     bare : float
-        Part of the height below the crown.
+        Share of the height below the crown.
     shape : str
         ``round``, ``cone`` or ``column``.
     lobes : int
-        Number of masses of leaves.
+        Number of leaf masses.
     leaf : float
-        Side of a spray of leaves over the crown's diameter.
+        Side of a leaf cluster relative to the diameter of the crown.
     colour : tuple of float
         Linear reflectance of leaves.
     share : float
-        How often it stands in gardens.
+        Relative frequency in gardens.
     """
 
     name: str
@@ -70,7 +71,7 @@ _SHARES = np.array([kind.share for kind in KINDS])
 
 @dataclass(frozen=True, eq=False)
 class _Crown:
-    """Leaves and inner masses of a tree of height 1, its foot at the origin."""
+    """Leaves and inner masses of a tree of height 1 with its base at the origin."""
 
     leaves: Points
     masses: Points
@@ -78,20 +79,20 @@ class _Crown:
 
 
 class Nursery:
-    """Makes trees; each kind has a few crowns, which are turned and scaled for each tree."""
+    """Makes trees; each kind has a few crowns, which are rotated and scaled for each tree."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
         self._crowns = {kind.name: [_crown(rng, kind) for _ in range(_VARIANTS)] for kind in KINDS}
 
     def any_kind(self) -> TreeKind:
-        """A kind, as often as its share says."""
+        """A random kind, with the frequencies of the table."""
         return KINDS[int(self._rng.choice(len(KINDS), p=_SHARES / _SHARES.sum()))]
 
     def add(
         self, builder: MeshBuilder, kind: TreeKind, frame: Frame, detail: float, scale: float = 1.0
     ) -> None:
-        """Add a tree as an object of its own; `detail` is the part of its leaves that is drawn."""
+        """Add a tree as a separate object; `detail` is the share of its leaves to draw."""
         rng = self._rng
         crown = self._crowns[kind.name][int(rng.integers(_VARIANTS))]
         height = rng.uniform(*kind.height) * scale
@@ -106,7 +107,7 @@ class Nursery:
         leaf = builder.surface(Material.LEAF, (colour[0], colour[1], colour[2]))
         count = max(int(len(crown.leaves) * detail), 8)
         leaves = crown.leaves[:count]
-        if detail < 1.0:  # fewer but larger: the crown stays as dense
+        if detail < 1.0:  # fewer but larger leaves keep the density of the crown
             middle = leaves.mean(axis=1, keepdims=True)
             leaves = middle + (leaves - middle) / math.sqrt(detail)
         points = turned.place(leaves.reshape(-1, 3) * stretch)
@@ -132,7 +133,7 @@ def _crown(rng: np.random.Generator, kind: TreeKind) -> _Crown:
 
 
 def _round(rng: np.random.Generator, kind: TreeKind) -> tuple[Points, NDArray[np.float64]]:
-    """Lobes over an ellipsoid, larger ones within."""
+    """Lobes on an ellipsoid, with a larger one inside."""
     half = (1 - kind.bare) / 2
     direction = rng.standard_normal((kind.lobes, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -147,7 +148,7 @@ def _round(rng: np.random.Generator, kind: TreeKind) -> tuple[Points, NDArray[np
 
 
 def _cone(rng: np.random.Generator, kind: TreeKind) -> tuple[Points, NDArray[np.float64]]:
-    """Boughs in whorls, the shorter the higher."""
+    """Branches in whorls, shorter towards the top."""
     level = np.linspace(0.02, 0.97, kind.lobes)
     around = np.arange(kind.lobes) * 2.4 + rng.uniform(0, 0.6, kind.lobes)
     reach = (1 - level) * kind.spread / 2 * rng.uniform(0.55, 0.85, kind.lobes)
@@ -169,7 +170,7 @@ _LOBES = {"round": _round, "cone": _cone, "column": _column}
 def _leaves(
     rng: np.random.Generator, kind: TreeKind, centres: Points, radii: NDArray[np.float64]
 ) -> Points:
-    """Sprays of leaves on the lobes, none inside of another lobe: (L, 3, 3) triangles."""
+    """Leaf clusters on the lobes, none inside another lobe: (L, 3, 3) triangles."""
     side = kind.leaf * kind.spread
     area = 4 * math.pi * radii**2
     counts = np.maximum((1.9 * area / (0.43 * side**2)).astype(int), 6)
@@ -207,7 +208,7 @@ def add_hedge(
     colour: Colour,
     detail: float,
 ) -> None:
-    """Add a clipped hedge along a line (N, 3) on the ground: leaves on a core."""
+    """Add a trimmed hedge along a line (N, 3) on the ground: leaves on a core."""
     leaf = builder.surface(Material.LEAF, colour)
     for start, end in itertools.pairwise(line):
         length = float(np.linalg.norm(end - start))

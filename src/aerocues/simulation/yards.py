@@ -1,4 +1,4 @@
-"""Halls, containers and stacks: what stands in yards of farms and works."""
+"""Objects in yards of farms and industry: halls, containers, tanks."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ _CONTAINERS: tuple[Colour, ...] = (
     (0.26, 0.07, 0.05), (0.05, 0.13, 0.28), (0.08, 0.20, 0.13), (0.42, 0.24, 0.06),
     (0.40, 0.40, 0.40), (0.20, 0.20, 0.21),
 )  # fmt: skip
+# Length, width and height of a standard 20-foot container in metres.
 _CONTAINER = (6.06, 2.44, 2.59)
 
 
 def add_hall(site: Site, frame: Frame, half: tuple[float, float]) -> None:
-    """Add a hall of sheet metal with a low gable roof, strips of light and vents."""
+    """Add a sheet-metal hall with a low gable roof, skylights and vents."""
     builder, rng = site.builder, site.rng
     sheet = varied(rng, _SHEETS[int(rng.integers(len(_SHEETS)))], 0.15)
     roof = builder.surface(Material.METAL, sheet)
@@ -54,7 +55,7 @@ def add_hall(site: Site, frame: Frame, half: tuple[float, float]) -> None:
 
 
 def add_works(site: Site, frame: Frame, half: tuple[float, float]) -> None:
-    """Add a flat-roofed building with roof lights, air conditioners and pipes on its roof."""
+    """Add a flat-roofed building with skylights, air conditioners and pipes on its roof."""
     builder, rng = site.builder, site.rng
     wall = builder.surface(Material.PLASTER, varied(rng, (0.45, 0.44, 0.42), 0.2))
     edge = builder.surface(Material.PLAIN, varied(rng, (0.45, 0.45, 0.44), 0.2))
@@ -78,7 +79,7 @@ def add_works(site: Site, frame: Frame, half: tuple[float, float]) -> None:
 
 
 def add_containers(site: Site, frame: Frame, count: tuple[int, int]) -> None:
-    """Add rows of containers, one to three high: alike, as they are."""
+    """Add rows of identical containers, stacked up to three high."""
     builder, rng = site.builder, site.rng
     length, width, height = _CONTAINER
     for row in range(count[0]):
