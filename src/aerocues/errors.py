@@ -1,4 +1,9 @@
-"""The errors that aerocues raises on purpose. Each message ends with what to do next."""
+"""The errors that aerocues raises on purpose. Each message ends with what to do next.
+
+Messages use the words of Python, between backticks: `max_keypoints` is a parameter,
+`pairs="exhaustive"` a parameter with a value, `aerocues.run` a function. The command line replaces
+them by its own options and commands when it prints a message (`cli.wording`).
+"""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def reconstruct(
     scene = open_as_measured(dataset, results) if isinstance(dataset, str) else dataset
     if combinations is None and results is None:
         raise ReconstructionError(
-            "no combinations: name some with --combinations, or results with --from"
+            "there are no combinations; give some as `combinations`, or measured `results`"
         )
     store = open_results(results, scene) if results is not None else None
     options = options or ReconstructionOptions()

@@ -178,7 +178,7 @@ def test_a_focal_length_that_is_not_known_must_be_given_to_stay_fixed(
     landscape: Dataset, quick: ReconstructionOptions, empty: Path
 ) -> None:
     images = [replace(image, truth=None) for image in landscape.images]
-    with pytest.raises(ReconstructionError, match=r"9 of 9 .* --focal-length"):
+    with pytest.raises(ReconstructionError, match=r"9 of 9 .* `focal_length`"):
         aerocues.reconstruct(scene_of(images), empty, SIFT, options=quick)
 
 
@@ -189,7 +189,7 @@ def test_scenes_that_have_no_depth_are_refused(empty: Path) -> None:
 
 def test_several_scenes_must_be_told_apart(landscape: Dataset, empty: Path) -> None:
     pairs = [replace(pair, sequence=f"part {pair.index % 2}") for pair in landscape.pairs]
-    with pytest.raises(ReconstructionError, match=r"2 scenes .* --sequences"):
+    with pytest.raises(ReconstructionError, match=r"2 scenes .* `sequences`"):
         aerocues.reconstruct(replace(landscape, pairs=pairs), empty, SIFT)
 
 

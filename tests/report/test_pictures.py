@@ -183,7 +183,7 @@ def test_pictures_give_way_to_size() -> None:
     few = fitting(both, 6500)
     assert [picture["why"] for picture in few.pictures] == ["0", "0"]
     assert few.images.keys() == {"1000-0-1", "1000-0-2", "1001-0-1", "1001-0-2"}
-    assert few.notes == ["4 of 6 pictures are left out to keep the page small (--max-megabytes)"]
+    assert few.notes == ["4 of 6 pictures are left out to keep the page small"]
     assert fitting(both, 0).pictures == []
 
 

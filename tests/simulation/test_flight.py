@@ -87,11 +87,11 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
     assert (
         len(open_dataset(spec, subset="Layer1, Layer2/*/000.png", pairs="exhaustive").images) == 5
     )
-    with pytest.raises(DatasetError, match=r"--subset Layer3.* Layer1"):
+    with pytest.raises(DatasetError, match=r"`subset=.Layer3.* Layer1"):
         open_dataset(spec, subset="Layer3")
-    with pytest.raises(DatasetError, match="--pairs exhaustive"):
+    with pytest.raises(DatasetError, match=r"`pairs=.exhaustive"):
         open_dataset(spec, subset="*/000.png")
-    with pytest.raises(DatasetError, match="--sequences"):
+    with pytest.raises(DatasetError, match="`sequences`"):
         open_dataset("synthetic", subset="a")
 
 
@@ -107,7 +107,7 @@ def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
     assert simulate(whole, SURVEY, small, subset=name) == Flown(0, 1)
     assert len(list(whole.glob("Layer1/*.png"))) == 2
     assert simulate(part, SURVEY, small) == Flown(1, 1)
-    with pytest.raises(SimulationError, match=r"--subset x.* Layer1"):
+    with pytest.raises(SimulationError, match=r"`subset=.x.* Layer1"):
         simulate(part, SURVEY, small, subset="x")
 
 

@@ -160,7 +160,7 @@ def test_short_time_looks_at_fewer_pairs(
     assert sit(photos, tmp_path / "some", Machine(memory), budget=20.0).known.shape[1] < 6
     assert sit(photos, tmp_path / "all", Machine(memory), budget=60.0).known.shape[1] == 6
     machine = Machine(memory)
-    with pytest.raises(SelectionError, match=r"0 of 6 pairs.* --budget 10s$"):
+    with pytest.raises(SelectionError, match=r"0 of 6 pairs.* `budget=.10s.`$"):
         sit(photos, tmp_path / "none", machine, budget=0.9)
     assert machine.now < 3
     with pytest.raises(SelectionError):

@@ -137,7 +137,7 @@ def _write(
             raise SimulationError(
                 f"the simulator's images have {got[1]} x {got[0]} pixels; set "
                 f'"Width": {asked.width}, "Height": {asked.height} for ImageType 0 and 1 in the '
-                f"CaptureSettings of its settings.json, or ask for --size {got[1]}x{got[0]}"
+                f"CaptureSettings of its settings.json, or ask for {got[1]} x {got[0]}"
             )
     for path in (place.image(name), place.depth(name)):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -166,7 +166,7 @@ class _Session:
         except OSError as error:
             raise SimulationError(
                 f"no simulator answers at {asked.address} ({error}); start AirSim or "
-                "Cosys-AirSim in ComputerVision mode, or give --host and --port"
+                "Cosys-AirSim in ComputerVision mode, or give its `host` and `port`"
             ) from error
         self.flavour, self.server_version = self._camera.flavour, self._camera.server_version
 

@@ -131,8 +131,10 @@ def report(
 
 def _tell(what: str) -> None:
     """Say what is being done, where somebody may be waiting."""
+    from aerocues.cli.wording import in_options
+
     if sys.stderr.isatty():
-        sys.stderr.write(f"{what}\n")
+        sys.stderr.write(f"{in_options(what)}\n")
 
 
 def _write_figures(entries: list[ReportEntry], folder: Path) -> None:

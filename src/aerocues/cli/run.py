@@ -269,6 +269,7 @@ def _next(folder: str, table: pl.DataFrame) -> tuple[str, ...]:
 def _print_ranking(rows: Measured, top: int) -> None:
     from aerocues.cli.console import standard_output
     from aerocues.cli.ranking_table import print_best
+    from aerocues.cli.wording import in_options
     from aerocues.errors import ScoreError
     from aerocues.scoring.measured import table_of
     from aerocues.scoring.ranking import rank_alternatives
@@ -278,4 +279,5 @@ def _print_ranking(rows: Measured, top: int) -> None:
         print_best(rank_alternatives(measured.table, measured.preset.settings), measured, top)
     except ScoreError as error:
         # The rows are there and of use, if only to see why none can be ranked.
-        standard_output().print(f"no ranking: {error}", soft_wrap=True, markup=False)
+        told = in_options(str(error))
+        standard_output().print(f"no ranking: {told}", soft_wrap=True, markup=False)

@@ -67,10 +67,10 @@ def open_dataset(
         raise DatasetError(f"--limit {limit} leaves no pairs; give 1 or more")
     kind, target = _parse(spec)
     if pairs is not None and not kind.takes_pairs:
-        raise DatasetError(f"{kind.name} has pairs of its own; leave --pairs out")
+        raise DatasetError(f"{kind.name} has pairs of its own; leave `pairs` out")
     if subset is not None and not kind.takes_pairs:
         raise DatasetError(
-            f"{kind.name} has pairs of its own; use --sequences in place of --subset"
+            f"{kind.name} has pairs of its own; use `sequences` in place of `subset`"
         )
     max_width = max_width or None
     dataset = kind.load(target, Options(pairs, max_width, equalize, subset))

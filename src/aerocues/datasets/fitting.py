@@ -22,10 +22,12 @@ def check_settings(max_width: int | None, equalize: str) -> None:
     """Raise DatasetError unless the size and the equalisation are valid."""
     if max_width is not None and max_width < 16:
         raise DatasetError(
-            f"--max-width {max_width} is too small; give 16 pixels or more, or 0 for all"
+            f"`max_width` must be 16 pixels or more, or 0 for images as they are, got {max_width}"
         )
     if equalize not in EQUALIZATIONS:
-        raise DatasetError(f"unknown equalisation '{equalize}'; use {', '.join(EQUALIZATIONS)}")
+        raise DatasetError(
+            f"`equalize` must be one of {', '.join(EQUALIZATIONS)}, got {equalize!r}"
+        )
 
 
 def fitted_size(size: tuple[int, int], max_width: int | None) -> tuple[int, int]:

@@ -68,7 +68,7 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
         folders = dict.fromkeys(name.rpartition("/")[0] or name for name in names)
         shown = ", ".join(list(folders)[:4]) + (", ..." if len(folders) > 4 else "")
         raise DatasetError(
-            f"no image of {root} is in --subset {options.subset}; there are: {shown}"
+            f'no image of {root} is in `subset="{options.subset}"`; there are: {shown}'
         )
     return [
         Image(

@@ -58,7 +58,7 @@ def _unmatched(pattern: str, methods: Methods) -> SelectionError:
         reason = (
             why_unavailable(first, methods)
             or why_incompatible(first, methods)
-            or f"{why_meaningless(first, methods)} (--all runs it all the same)"
+            or f"{why_meaningless(first, methods)} (`everything=True` runs it all the same)"
         )
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
     # A part of a name is no misspelt whole one: it wants its stars.

@@ -47,7 +47,6 @@ def _child(scene: Scene, limits: ReconstructionLimits) -> ChildProcess:
         "aerocues.reconstruction.worker",
         scene,
         memory_limit_mb=limits.memory_limit_mb,
-        timeout_option="--time-limit",
     )
 
 

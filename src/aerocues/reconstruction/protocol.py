@@ -99,8 +99,8 @@ class ReconstructionProtocol:
         length = self.focal_length
         if length is not None and not (isfinite(length) and length > 0):
             raise ReconstructionError(
-                f"--focal-length {length:g} is no focal length; give pixels above 0, or leave it "
-                "out to take what EXIF tells"
+                f"`focal_length` must be above 0 pixels, got {length:g}; leave it out to take what "
+                "EXIF tells"
             )
 
     def matching_identity(self) -> dict[str, object]:

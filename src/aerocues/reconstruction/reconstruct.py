@@ -107,7 +107,7 @@ def _check_scene(dataset: Dataset) -> None:
     if len(sequences) > 1:
         raise ReconstructionError(
             f"{dataset.name} has {len(sequences)} scenes ({', '.join(sequences[:5])}, ...); "
-            "choose one with --sequences"
+            "choose one with `sequences`"
         )
 
 

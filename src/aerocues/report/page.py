@@ -61,7 +61,7 @@ def _plotly() -> str:
     except ImportError as error:
         raise MethodUnavailableError(
             f"the page needs plotly ({error}); install it: pip install plotly, or report "
-            "where it is; --format markdown does without"
+            "where it is"
         ) from error
 
     return str(get_plotlyjs())

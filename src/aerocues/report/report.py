@@ -63,7 +63,7 @@ def report_entries(
         results, preset, criteria=criteria, reconstruction=reconstruction, **changes
     )
     if not entries:
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     found = []
     for entry in entries:
         source = results[entry.source]

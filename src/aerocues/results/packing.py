@@ -102,7 +102,7 @@ def _extract(file: Path, folder: Path) -> None:
     except BROKEN as error:
         raise StoreError(
             f"{file} is no results folder and no packed one ({error}); give a results folder, pack "
-            "it again, or read a table with 'aerocues import'"
+            "it again, or read a table with `aerocues.import_results`"
         ) from error
     except OSError as error:
         raise StoreError(

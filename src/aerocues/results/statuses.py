@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Status:
     """One outcome.
 
-    ``retried`` says whether ``--retry-failed`` runs such a row again: where the machine or a
+    ``retried`` says whether ``retry_failed`` runs such a row again: where the machine or a
     method's bug decided, not the images.
     """
 

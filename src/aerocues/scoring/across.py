@@ -153,7 +153,7 @@ def entries_of(
     presets = sorted({entry.preset for _, entry in found})
     if len(presets) > 1:
         raise ScoreError(
-            f"the results suit different presets ({', '.join(presets)}); choose one with --preset"
+            f"the results suit different presets ({', '.join(presets)}); choose one with `preset`"
         )
     return _with_names(found)
 

@@ -89,7 +89,7 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
     datasets = rows["dataset"].unique().sort().to_list()
     if dataset is None and len(datasets) > 1:
         raise ScoreError(
-            f"there are several datasets; choose one of them (--dataset): {', '.join(datasets)}"
+            f"there are several datasets; choose one as `dataset`: {', '.join(datasets)}"
         )
     if dataset is not None and dataset not in datasets:
         raise ScoreError(f"there is no dataset {dataset!r}; choose from {', '.join(datasets)}")
@@ -135,7 +135,7 @@ def table_of(
 
     rows = rows_of_dataset(results.table(), dataset)
     if rows.is_empty():
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     _refuse_failure(rows, chosen)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
@@ -160,7 +160,7 @@ def _refuse_failure(rows: pl.DataFrame, preset: ScorePreset) -> None:
     told = ", ".join(f"{status} {number:,}" for status, number in statuses.items())
     raise ScoreError(
         f"nothing succeeded on {rows['dataset'][0]} ({told}), so there is nothing to rank; "
-        "'aerocues status' tells why: try larger images (--max-width), other pairs or combinations"
+        "its messages tell why: try larger images (`max_width`), other pairs or combinations"
     )
 
 
@@ -186,8 +186,8 @@ def _refuse_chance(criteria: Sequence[Criterion]) -> None:
     needed = [each.name for each in criteria if each.beyond_chance]
     if needed:
         raise ScoreError(
-            f"no row has inliers beyond chance, which {needed[0]} needs; score with --preset "
-            "thesis, or measure with 'aerocues run --preset default'"
+            f"no row has inliers beyond chance, which {needed[0]} needs; score with "
+            '`preset="thesis"`, or measure again with `aerocues.run` and `preset="default"`'
         )
 
 

@@ -166,7 +166,7 @@ def relate_outcomes(
 
     rows = rows_of_dataset(results.table(), dataset)
     if rows.is_empty():
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     return relations_of(rows, models, chance_fails=chosen.chance_fails)
@@ -181,7 +181,7 @@ def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
         raise ScoreError(
             f"{len(joined)} combinations were both measured and reconstructed, too few for "
             f"correlations of pairs and models; make {FEWEST_MODELS} or more with "
-            "'aerocues reconstruct'"
+            "`aerocues.reconstruct`"
         )
     return _related(rows["dataset"][0], joined, features.columns[1:])
 

@@ -165,7 +165,7 @@ def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
         folders = list(dict.fromkeys(shot.name.rpartition("/")[0] for shot in survey.shots))
         shown = ", ".join(folders[:4]) + (", ..." if len(folders) > 4 else "")
         raise SimulationError(
-            f"no image of {survey.name} is in --subset {subset}; there are: {shown}"
+            f'no image of {survey.name} is in `subset="{subset}"`; there are: {shown}'
         )
     return chosen
 

@@ -245,7 +245,7 @@ def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[
         if not (gray and descriptors[each.descriptor].needs_colour)
     ]
     if len(chosen) < 2:
-        raise SelectionError("a race needs two combinations; let --combinations choose more")
+        raise SelectionError("a race needs two combinations; let `combinations` choose more")
     return chosen
 
 

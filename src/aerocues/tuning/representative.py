@@ -171,12 +171,12 @@ def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
     if statuses and all(status == "no_keypoints" for status in statuses):
         return (
             "the images are blank: neither SIFT nor GFTT_H nor AKAZE finds a keypoint in any pair; "
-            "check exposure and files, or try --equalize clahe"
+            'check exposure and files, or try `equalize="clahe"`'
         )
     if statuses and all(status == "error" for status in statuses):
         return f"no pair could be measured: {messages[0] if messages else 'unknown error'}"
     return (
         f"the images of the {len(pairs)} tested pairs do not overlap: none of "
         f"{', '.join(PROBES)} finds a model better than chance; check that the pairs overlap, or "
-        "choose others with --pairs exhaustive or gps"
+        'choose others with `pairs="exhaustive"` or `pairs="gps"`'
     )

@@ -105,10 +105,10 @@ class Session:
         wanted = MORE * max(self.budget, self.spent)
         enough = next((each for each in BUDGETS if each >= wanted), round(wanted))
         return SelectionError(
-            f"a budget of {self.budget:g} s is too small: {why}; give --budget {_typed(enough)}"
+            f'a budget of {self.budget:g} s is too small: {why}; give `budget="{_typed(enough)}"`'
         )
 
 
 def _typed(seconds: int) -> str:
-    """As ``--budget`` takes it."""
+    """As ``budget`` takes it."""
     return f"{-(-seconds // 60)}min" if seconds >= 60 else f"{seconds}s"
