@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from aerocues.evaluation.run import Limits, Observer, run
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
+    from aerocues.methods.plugins import register
     from aerocues.modelling import reconstruct
     from aerocues.reconstruction.models import Models
     from aerocues.reconstruction.options import ReconstructionOptions
@@ -62,6 +63,7 @@ _MODULES = {
     "tune": "tuning.tune",
     "TuneOptions": "tuning.tune",
     "Combination": "methods.combination",
+    "register": "methods.plugins",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
     "Matches": "methods.arrays",
@@ -91,6 +93,7 @@ __all__ = [
     "open_dataset",
     "recommend",
     "reconstruct",
+    "register",
     "relate_outcomes",
     "run",
     "score",

@@ -29,6 +29,8 @@ class AsMeasured:
     max_keypoints : int
         0 for all.
     seed : int
+    plugins : tuple of str
+        Methods of the user's own, as ``module:Class``.
     """
 
     images: str
@@ -39,6 +41,7 @@ class AsMeasured:
     preset: str
     max_keypoints: int
     seed: int
+    plugins: tuple[str, ...] = ()
 
     def words(self, max_keypoints: int) -> list[str]:
         """Images and options that differ from the defaults of `run` and `reconstruct`.
@@ -60,6 +63,8 @@ class AsMeasured:
         words = [self.images]
         for name, value, default in options:
             words += [name, f"{value}"] if value != default else []
+        for plugin in self.plugins:
+            words += ["--plugin", plugin]
         return words
 
 

@@ -19,6 +19,7 @@ from aerocues.cli.options import (
     MaxWidthOption,
     MethodPresetOption,
     PairsOption,
+    PluginOption,
     SeedOption,
     SubsetOption,
     TopOption,
@@ -96,6 +97,7 @@ def recommend(
     ] = 0.95,
     workers: WorkersOption = None,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Recommend a combination for images, in minutes.
 
@@ -133,7 +135,8 @@ def recommend(
         found = _race(dataset, options, arguments)
         _print(found, top, explain=explain)
         width = _shrunk(dataset, max_width)
-        same = AsMeasured(images, pairs, subset, equalize, width, preset, max_keypoints, seed)
+        opened = (images, pairs, subset, equalize, width)
+        same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()))
         _print_next(found, same)
         if report is not None:
             _write_report(found, report)

@@ -18,6 +18,7 @@ from aerocues.cli.options import (
     MaxWidthOption,
     MemoryLimitOption,
     PairsOption,
+    PluginOption,
     RetryFailedOption,
     SeedOption,
     SequencesOption,
@@ -117,6 +118,7 @@ def reconstruct(
     ] = 1800.0,
     memory_limit: MemoryLimitOption = None,
     retry_failed: RetryFailedOption = False,
+    plugin: PluginOption = None,
 ) -> None:
     """Make a COLMAP model of a scene with each chosen combination.
 

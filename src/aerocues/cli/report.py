@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.options import ResultsArguments
+from aerocues.cli.options import PluginOption, ResultsArguments
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -84,6 +84,7 @@ def report(
         int, typer.Option(min=2, metavar="N", help="Number of bootstrap resamples.")
     ] = 1000,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Write all results into one interactive page.
 

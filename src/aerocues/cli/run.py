@@ -23,6 +23,7 @@ from aerocues.cli.options import (
     MemoryLimitOption,
     MethodPresetOption,
     PairsOption,
+    PluginOption,
     RetryFailedOption,
     SeedOption,
     SequencesOption,
@@ -126,6 +127,7 @@ def run(
         bool, typer.Option("--dry-run", help="Show the plan without measuring or writing anything.")
     ] = False,
     top: TopOption = 15,
+    plugin: PluginOption = None,
 ) -> None:
     """Measure combinations on the image pairs of a dataset.
 

@@ -13,6 +13,7 @@ from aerocues.cli.options import (
     MaxKeypointsOption,
     MaxWidthOption,
     PairsOption,
+    PluginOption,
     SeedOption,
     WorkersOption,
 )
@@ -74,6 +75,7 @@ def tune(
     ] = None,
     workers: WorkersOption = None,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Search parameters on some scenes and keep those that also help on other scenes.
 
