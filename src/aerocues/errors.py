@@ -12,6 +12,10 @@ class AerocuesError(Exception):
     """Base of every error that a user can act on; the command line prints it in one line."""
 
 
+class ArgumentError(AerocuesError):
+    """An argument has a value that makes no sense, whatever is measured."""
+
+
 class SelectionError(AerocuesError):
     """A combination, method or preset was named that does not exist or cannot be used."""
 

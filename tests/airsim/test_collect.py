@@ -16,7 +16,7 @@ from aerocues.cli.program import exit_code
 from aerocues.datasets.catalog import open_dataset
 from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose
-from aerocues.simulation.flight import Flown, Settings, simulate
+from aerocues.simulation.flight import Flown, Settings, fly
 from aerocues.simulation.rendering import Rendering, render
 from aerocues.simulation.scenes import build_scene, stage
 from aerocues.simulation.sensor import develop
@@ -72,7 +72,7 @@ def test_a_survey_is_collected_with_its_truth(tmp_path: Path, flavour: str, told
 def test_what_the_embedded_renderer_shows_is_what_it_would_have_written(tmp_path: Path) -> None:
     settings = Settings(width=60, height=40)
     survey = Survey("two", SURVEY.shots[:2])
-    assert simulate(tmp_path / "own", survey, settings) == Flown(2, 0)
+    assert fly(tmp_path / "own", survey, settings) == Flown(2, 0)
     # The same scene behind the protocol; each image has the noise of its number.
     from aerocues.simulation.flight import _half
 

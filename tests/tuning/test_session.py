@@ -12,10 +12,11 @@ import pytest
 from aerocues.datasets.catalog import open_dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
-from aerocues.evaluation.engine import Finished, Watch
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.presets import preset_named
 from aerocues.methods.selection import select
+from aerocues.progress import Watch
 from aerocues.results.metrics import Row
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named

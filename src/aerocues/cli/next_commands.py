@@ -6,10 +6,10 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from aerocues.reconstruction.protocol import MAX_KEYPOINTS
+from aerocues.defaults import FLIGHT_KEYPOINTS
 
 if TYPE_CHECKING:
-    from aerocues.tuning.recommend import Recommendation
+    from aerocues.tuning.recommendation import Recommendation
 
 FEW = 3
 
@@ -77,7 +77,7 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     ]
     if found.dataset.geometry == "epipolar":
         words = ["-o", "models", *_one_scene(found), "--combinations", found.best]
-        commands.insert(0, ["reconstruct", *measured.words(MAX_KEYPOINTS), *words])
+        commands.insert(0, ["reconstruct", *measured.words(FLIGHT_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]
 
 

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-# A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
-LEAST_MEMORY = 0.5
+from aerocues.defaults import LEAST_MEMORY
 
 
 def _register_all(references: list[str] | None) -> list[str] | None:

@@ -1,14 +1,14 @@
-"""Scores measured results: from a results folder to a ranking."""
+"""Measured results as a table that can be scored."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from aerocues.errors import ScoreError
+from aerocues.errors import ArgumentError, ScoreError
 from aerocues.results.combination_columns import METHODS, combination_name
-from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.combinations import (
     SUCCESS,
     decision_table,
@@ -16,12 +16,19 @@ from aerocues.scoring.combinations import (
     suitable_preset,
 )
 from aerocues.scoring.criteria import Criterion, criteria_named
-from aerocues.scoring.ranking import TOP_K, Interval, Ranking, rank_alternatives
-from aerocues.scoring.settings import ScorePreset, ScoreSettings, score_preset_named
+from aerocues.scoring.settings import (
+    Names,
+    ScorePreset,
+    ScoreSettings,
+    names_of,
+    score_preset_named,
+)
 from aerocues.scoring.table import DecisionTable
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from aerocues.results.measured_results import Results
 
 # If fewer are reconstructed, they are a selection by the user, and the others keep their score.
 ENOUGH_RECONSTRUCTED = 0.5
@@ -37,6 +44,30 @@ class Measured(Protocol):
     def reconstructions(self) -> pl.DataFrame:
         """Rows of reconstructions; may be empty."""
         ...
+
+
+Given = TypeVar("Given", bound=Measured)
+
+
+def opened(results: Given | str | Path) -> Given | Results:
+    """Results as they are, or those of a folder or packed file.
+
+    Raises
+    ------
+    ArgumentError
+        If they are neither.
+    StoreError
+        If there are no results at that place.
+    """
+    if isinstance(results, str | Path):
+        from aerocues.results.measured_results import Results
+
+        return Results(results)
+    if not hasattr(results, "table"):
+        raise ArgumentError(
+            f"`results` must be Results or the path of a results folder, got {results!r}"
+        )
+    return results
 
 
 @dataclass(frozen=True)
@@ -99,6 +130,8 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
 def settings_from(preset: ScorePreset, **changes: object) -> ScoreSettings:
     """Settings of a preset, replaced by the changes that are not None."""
     given = {name: value for name, value in changes.items() if value is not None}
+    if "weights" in given:
+        given["weights"] = names_of(given["weights"])  # type: ignore[arg-type]
     return replace(preset.settings, **given)  # type: ignore[arg-type]
 
 
@@ -106,7 +139,7 @@ def table_of(
     results: Measured,
     preset: str | None = None,
     *,
-    criteria: Sequence[str] | None = None,
+    criteria: Names | None = None,
     dataset: str | None = None,
     reconstruction: bool | None = None,
 ) -> MeasuredTable:
@@ -119,6 +152,8 @@ def table_of(
     preset : str, optional
         A row of `settings.SCORE_PRESETS`; the one that suits the measurements by default.
     criteria : sequence of str, optional
+        A row of `settings.PRESETS`; the one that suits the measurements by default.
+    criteria : str or sequence of str, optional
         In place of the preset's.
     dataset : str, optional
         Needed if there are several.
@@ -139,7 +174,7 @@ def table_of(
     chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     _refuse_failure(rows, chosen)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
-    names = chosen.criteria if criteria is None else tuple(criteria)
+    names = chosen.criteria if criteria is None else names_of(criteria)
     if reconstruction is None:
         reconstruction = criteria is None and _enough_models(rows, models)
     if reconstruction:
@@ -189,57 +224,3 @@ def _refuse_chance(criteria: Sequence[Criterion]) -> None:
             f"no row has inliers beyond chance, which {needed[0]} needs; score with "
             '`preset="thesis"`, or measure again with `aerocues.run` and `preset="default"`'
         )
-
-
-def score(
-    results: Measured,
-    preset: str | None = None,
-    *,
-    criteria: Sequence[str] | None = None,
-    dataset: str | None = None,
-    reconstruction: bool | None = None,
-    settings: ScoreSettings | None = None,
-    resamples: int = RESAMPLES,
-    seed: int = 0,
-    interval: Interval = "joint",
-    test: str = "bootstrap",
-    top_k: int = TOP_K,
-) -> Ranking:
-    """Rank the combinations of measured results by CUES.
-
-    Parameters
-    ----------
-    results : Measured
-        Such as `aerocues.Results`.
-    preset : str, optional
-        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; by
-        default the one that suits the measurements.
-    criteria : sequence of str, optional
-        Names of rows of `criteria.CRITERIA`, in place of the preset's.
-    dataset : str, optional
-        Needed if there are several.
-    reconstruction : bool, optional
-        Whether to add the criteria of reconstruction; by default if most combinations were
-        reconstructed.
-    settings : ScoreSettings, optional
-        In place of the preset's.
-    resamples, seed, interval, test, top_k
-        See `ranking.rank_alternatives`.
-
-    Raises
-    ------
-    ScoreError
-        If something does not exist or was not measured.
-    """
-    found = table_of(
-        results, preset, criteria=criteria, dataset=dataset, reconstruction=reconstruction
-    )
-    return rank_alternatives(
-        found.table,
-        settings or found.preset.settings,
-        resamples=resamples,
-        seed=seed,
-        interval=interval,
-        test=test,
-        top_k=top_k,
-    )

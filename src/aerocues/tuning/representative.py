@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
+from aerocues.defaults import RACE_PAIRS
 from aerocues.errors import DatasetError
 from aerocues.evaluation.engine import Engine
 from aerocues.methods.combination import Combination
@@ -15,8 +16,6 @@ from aerocues.tuning.layout import blocks_of, spread_order
 from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.session import Session
 
-# More pairs represent the dataset better, and leave time to measure fewer combinations on each.
-MOST_PAIRS = 24
 # One pair says too little about the others.
 FEWEST_PAIRS = 2
 # Strong combinations of different kinds that run fast; a pair on which all fail has no overlap.
@@ -41,7 +40,7 @@ class Seen:
     unseen: tuple[int, ...] = ()
 
 
-def spread_pairs(pairs: Sequence[Pair], most: int = MOST_PAIRS, seed: int = 0) -> list[Pair]:
+def spread_pairs(pairs: Sequence[Pair], most: int = RACE_PAIRS, seed: int = 0) -> list[Pair]:
     """At most `most` pairs, evenly spread; each sequence contributes in proportion to its size.
 
     Every sequence keeps at least one pair. If there are more than `most` sequences, one of each

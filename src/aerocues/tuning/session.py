@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Sequence
 
 from aerocues.errors import SelectionError
-from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.engine import Engine
+from aerocues.progress import Activity
 from aerocues.tuning.journal import Journal, Step
 from aerocues.tuning.pair_evaluator import Measurement, PairEvaluator
 
