@@ -49,7 +49,7 @@ class BareLoop:
         self._methods = opencv_methods()
         self._naive = naive
         self._exact = exact
-        self._dataset = aerocues.open_dataset(spec, limit=limit, max_width=max_width)
+        self._dataset = aerocues.open_dataset(spec, max_pairs=limit, max_width=max_width)
         verification = MeasurementProtocol().verification
         self._uniform = magsac_parameters(verification)
         self._guided = magsac_parameters(verification, guided=True)

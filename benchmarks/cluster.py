@@ -1,6 +1,6 @@
 """What a Dask cluster costs and gains, against worker processes on the same machine.
 
-    python benchmarks/cluster.py [--dataset DATASET] [--limit PAIRS] [--repeats N]
+    python benchmarks/cluster.py [--dataset DATASET] [--max-pairs PAIRS] [--repeats N]
 
 Wall seconds of the same job with one and two local workers, and with one and two Dask workers on a
 scheduler of their own, all on this machine. Starting the scheduler and the workers is not counted;
@@ -23,7 +23,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import aerocues
-from aerocues import Dataset, Limits
+from aerocues import Dataset
 from aerocues.evaluation.dask_engine import DaskEngine
 from aerocues.evaluation.dask_scheduler import connected
 from aerocues.evaluation.engine import Engine
@@ -61,10 +61,9 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def measure(dataset: Dataset, workers: int, engine: Engine | None) -> float:
     """Wall seconds of the job."""
     with tempfile.TemporaryDirectory() as folder:
-        limits = Limits(workers=None if engine else workers)
         started = time.perf_counter()
         place = f"{folder}/results"
-        options = {"timing": "shared", "limits": limits, "engine": engine}
+        options = {"timing": "shared", "workers": None if engine else workers, "engine": engine}
         aerocues.run(dataset, COMBINATIONS, place, **options)
         return time.perf_counter() - started
 
@@ -73,10 +72,10 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--dataset", default="synthetic")
-    parser.add_argument("--limit", type=int, default=4, help="pairs")
+    parser.add_argument("--max-pairs", type=int, default=4, help="pairs")
     parser.add_argument("--repeats", type=int, default=3)
     arguments = parser.parse_args()
-    dataset = aerocues.open_dataset(arguments.dataset, limit=arguments.limit)
+    dataset = aerocues.open_dataset(arguments.dataset, max_pairs=arguments.max_pairs)
     seconds: dict[str, list[float]] = {}
     for _ in range(arguments.repeats):
         for workers in (1, 2):

@@ -1,6 +1,6 @@
 """What a full evaluation costs: against a naive loop, one pass with brute force, and bare calls.
 
-    python benchmarks/evaluation.py [--dataset simulated:FLIGHT] [--limit 6] [--max-width 400]
+    python benchmarks/evaluation.py [--dataset simulated:FLIGHT] [--max-pairs 6] [--max-width 400]
 
 Four figures, each of the same combinations on the same pairs, in processes of their own:
 
@@ -30,10 +30,9 @@ RUN = """
 import json, resource, time
 import aerocues
 started = time.perf_counter()
-dataset = aerocues.open_dataset({dataset!r}, limit={limit}, max_width={max_width})
-limits = aerocues.Limits(workers={workers})
+dataset = aerocues.open_dataset({dataset!r}, max_pairs={max_pairs}, max_width={max_width})
 results = aerocues.run(
-    dataset, {combinations!r}, {output!r}, limits=limits, timing={timing!r}
+    dataset, {combinations!r}, {output!r}, workers={workers}, timing={timing!r}
 )
 wall = time.perf_counter() - started
 cpu = sum(
@@ -52,7 +51,7 @@ LOOP = """
 import json, sys
 sys.path.insert(0, {folder!r})
 from bare_loop import BareLoop
-loop = BareLoop({dataset!r}, {limit}, naive=False, exact=True, max_width={max_width})
+loop = BareLoop({dataset!r}, {max_pairs}, naive=False, exact=True, max_width={max_width})
 print(json.dumps({{"cpu": loop.run({combinations!r})}}))
 """
 Figures = dict[str, float]
@@ -74,7 +73,7 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--dataset", default="synthetic")
-    parser.add_argument("--limit", type=int, default=6, help="pairs")
+    parser.add_argument("--max-pairs", type=int, default=6, help="pairs")
     parser.add_argument("--max-width", type=int, default=400, help="pixels")
     parser.add_argument("--combinations", default=COMBINATIONS)
     arguments = parser.parse_args()

@@ -26,15 +26,14 @@ from pathlib import Path
 COMBINATIONS = "AKAZE-*,MSER-*,GFTT_H-*,MSD-*"
 EVEN = {
     "combinations": "ORB-ORB-HAM-*,AKAZE-AKAZE-*,AKAZE-SIFT-*,BRISK-BRISK-HAM-*,SIFT-SIFT-*",
-    "limit": 8,
+    "max_pairs": 8,
 }
 RUN = """
 import json, sys, time, resource
 import aerocues
 started = time.perf_counter()
-dataset = aerocues.open_dataset({dataset!r}, limit={limit})
-limits = aerocues.Limits(workers={workers})
-results = aerocues.run(dataset, {combinations!r}, {output!r}, limits=limits, timing="shared")
+dataset = aerocues.open_dataset({dataset!r}, max_pairs={max_pairs})
+results = aerocues.run(dataset, {combinations!r}, {output!r}, workers={workers}, timing="shared")
 wall = time.perf_counter() - started
 cpu = sum(
     usage.ru_utime + usage.ru_stime
@@ -46,7 +45,7 @@ LOOP = """
 import json, sys, time
 sys.path.insert(0, {folder!r})
 from bare_loop import BareLoop
-loop = BareLoop({dataset!r}, {limit}, naive={naive})
+loop = BareLoop({dataset!r}, {max_pairs}, naive={naive})
 print(json.dumps({{"cpu": loop.run({combinations!r})}}))
 """
 
@@ -71,7 +70,7 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--dataset", default="synthetic")
-    parser.add_argument("--limit", type=int, default=1, help="pairs")
+    parser.add_argument("--max-pairs", type=int, default=1, help="pairs")
     parser.add_argument("--combinations", default=COMBINATIONS)
     parser.add_argument("--repeats", type=int, default=3)
     arguments = parser.parse_args()

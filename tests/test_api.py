@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import aerocues
-from aerocues import Combination, Limits
+from aerocues import Combination
 from tests.cli.conftest import write_views
 
 
@@ -26,14 +26,12 @@ def test_other_names_cannot() -> None:
 
 def test_a_measurement_from_python(tmp_path: Path) -> None:
     write_views(tmp_path / "photos")
-    dataset = aerocues.open_dataset(str(tmp_path / "photos"), limit=2)
+    dataset = aerocues.open_dataset(str(tmp_path / "photos"), max_pairs=2)
     combinations: list[Combination | str] = [
         Combination.parse("ORB-ORB-HAM-BF"),
         "orb-brief-ham-bf",
     ]
-    results = aerocues.run(
-        dataset, combinations, tmp_path / "results", limits=Limits(workers=1), seed=3
-    )
+    results = aerocues.run(dataset, combinations, tmp_path / "results", workers=1, seed=3)
     table = results.table()
     assert table["pair"].to_list() == [0, 0, 1, 1]
     assert set(table["status"]) == {"ok"}

@@ -2,14 +2,17 @@
 
     import aerocues
 
-    dataset = aerocues.open_dataset("photos", max_width=1000)
-    print(aerocues.recommend(dataset, "race").best)
-    results = aerocues.run(dataset, "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
-    print(aerocues.score(results).frame("combination"))
-    aerocues.reconstruct("photos", "models", results="results", top=5)
+    print(aerocues.recommend("photos").best)
+    results = aerocues.run("photos", "ORB-*-HAM-BF,SIFT-SIFT-L2-BF", "results")
+    aerocues.score(results)
+    aerocues.reconstruct("photos", results=results, top=5)
     aerocues.write_report(results, "report.html")
+    matched = aerocues.match("photos/1.jpg", "photos/2.jpg", "ORB-BEBLID-HAM-BF")
 
-Everything here is loaded when it is first used, so that importing the package costs nothing.
+Functions take images, then combinations, then the place of the output; all else has a name. Images
+are a dataset, its text form, a folder or files; results are `Results` or their path. What a caller
+can mend raises `AerocuesError`. Everything is loaded when it is first used, so that importing the
+package costs nothing.
 """
 
 from __future__ import annotations
@@ -21,80 +24,90 @@ if TYPE_CHECKING:
     from aerocues.datasets.dataset import Dataset
     from aerocues.errors import AerocuesError
     from aerocues.evaluation.dask_engine import DaskEngine
-    from aerocues.evaluation.run import Limits, Observer, run
+    from aerocues.evaluation.run import run
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
+    from aerocues.methods.plugins import register
     from aerocues.modelling import reconstruct
+    from aerocues.progress import Event
     from aerocues.reconstruction.models import Models
-    from aerocues.reconstruction.options import ReconstructionOptions
-    from aerocues.reconstruction.protocol import ReconstructionProtocol
     from aerocues.report.report import write_report
     from aerocues.results.importing import import_results
     from aerocues.results.measured_results import Results
-    from aerocues.scoring.measured import score
-    from aerocues.scoring.outcomes import relate_outcomes
+    from aerocues.scoring.across import ComparedResults
+    from aerocues.scoring.assessment import compare, score, validate
+    from aerocues.scoring.outcomes import Relations, relate_outcomes
     from aerocues.scoring.ranking import Ranking
-    from aerocues.tuning.recommend import RaceOptions, Recommendation, recommend
-    from aerocues.tuning.tune import TuneOptions, tune
+    from aerocues.scoring.validation import Validation
+    from aerocues.simulation.simulate import simulate
+    from aerocues.tuning.recommend import recommend
+    from aerocues.tuning.recommendation import Recommendation
+    from aerocues.tuning.tune import Tuned, tune
 
     __version__: str
 
 _MODULES = {
     "open_dataset": "datasets.catalog",
     "Dataset": "datasets.dataset",
+    "simulate": "simulation.simulate",
     "run": "evaluation.run",
-    "Limits": "evaluation.run",
-    "Observer": "evaluation.run",
     "DaskEngine": "evaluation.dask_engine",
     "Results": "results.measured_results",
     "import_results": "results.importing",
-    "reconstruct": "modelling",
-    "ReconstructionOptions": "reconstruction.options",
-    "ReconstructionProtocol": "reconstruction.protocol",
-    "Models": "reconstruction.models",
-    "score": "scoring.measured",
-    "relate_outcomes": "scoring.outcomes",
+    "score": "scoring.assessment",
     "Ranking": "scoring.ranking",
+    "validate": "scoring.assessment",
+    "Validation": "scoring.validation",
+    "compare": "scoring.assessment",
+    "ComparedResults": "scoring.across",
+    "relate_outcomes": "scoring.outcomes",
+    "Relations": "scoring.outcomes",
+    "reconstruct": "modelling",
+    "Models": "reconstruction.models",
     "write_report": "report.report",
     "recommend": "tuning.recommend",
-    "RaceOptions": "tuning.recommend",
-    "Recommendation": "tuning.recommend",
+    "Recommendation": "tuning.recommendation",
     "tune": "tuning.tune",
-    "TuneOptions": "tuning.tune",
+    "Tuned": "tuning.tune",
     "Combination": "methods.combination",
+    "register": "methods.plugins",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
     "Matches": "methods.arrays",
+    "Event": "progress",
     "AerocuesError": "errors",
 }
 
 __all__ = [
     "AerocuesError",
     "Combination",
+    "ComparedResults",
     "DaskEngine",
     "Dataset",
+    "Event",
     "Features",
     "Keypoints",
-    "Limits",
     "Matches",
     "Models",
-    "Observer",
-    "RaceOptions",
     "Ranking",
     "Recommendation",
-    "ReconstructionOptions",
-    "ReconstructionProtocol",
+    "Relations",
     "Results",
-    "TuneOptions",
+    "Tuned",
+    "Validation",
     "__version__",
+    "compare",
     "import_results",
     "open_dataset",
     "recommend",
     "reconstruct",
+    "register",
     "relate_outcomes",
     "run",
     "score",
+    "simulate",
     "tune",
+    "validate",
     "write_report",
 ]
 

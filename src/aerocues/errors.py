@@ -1,10 +1,19 @@
-"""The errors that aerocues raises on purpose. Each message ends with what to do next."""
+"""The errors that aerocues raises on purpose. Each message ends with what to do next.
+
+Messages use the words of Python, between backticks: `max_keypoints` is a parameter,
+`pairs="exhaustive"` a parameter with a value, `aerocues.run` a function. The command line replaces
+them by its own options and commands when it prints a message (`cli.wording`).
+"""
 
 from __future__ import annotations
 
 
 class AerocuesError(Exception):
     """Base of every error that a user can act on; the command line prints it in one line."""
+
+
+class ArgumentError(AerocuesError):
+    """An argument has a value that makes no sense, whatever is measured."""
 
 
 class SelectionError(AerocuesError):

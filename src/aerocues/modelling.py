@@ -2,35 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
+from aerocues.arguments import check_whole
+from aerocues.datasets.catalog import DatasetLike
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import ReconstructionError
+from aerocues.defaults import FLIGHT_KEYPOINTS, RECONSTRUCTED, STAGE_TIMEOUT
+from aerocues.errors import ArgumentError, ReconstructionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.preset_files import recorded_preset
 from aerocues.methods.presets import Preset, preset_named, preset_names
+from aerocues.methods.selection import Patterns
+from aerocues.progress import Progress
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
-from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
+from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.protocol import Intrinsics, Mapper, ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
-from aerocues.results.measured_results import Results
+from aerocues.reconstruction.scene import Wanted
+from aerocues.results.measured_results import Results, as_results
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
 
-TOP = 10
-
 
 def reconstruct(
-    dataset: Dataset | str,
-    output: str | Path,
-    combinations: str | Iterable[str | Combination] | None = None,
+    dataset: DatasetLike,
+    combinations: Patterns | None = None,
+    output: str | Path = "models",
     *,
-    results: str | Path | None = None,
+    results: Results | str | Path | None = None,
     top: int | None = None,
-    options: ReconstructionOptions | None = None,
-    observer: ReconstructionObserver | None = None,
+    preset: str | Preset | None = None,
+    max_keypoints: int = FLIGHT_KEYPOINTS,
+    intrinsics: Intrinsics = "fixed",
+    focal_length: float | None = None,
+    mapper: Mapper = "incremental",
+    reference: str | Combination | None = None,
+    colours: bool = True,
+    undistort: bool = False,
+    seed: int = 0,
+    features: str | Path | None = None,
+    workers: int | None = None,
+    timeout: float | str = STAGE_TIMEOUT,
+    memory_limit: float | None = None,
+    retry_failed: bool = False,
+    progress: Progress | None = None,
 ) -> Models:
     """Reconstruct a scene in 3D with COLMAP, once with each of some combinations.
 
@@ -39,21 +56,48 @@ def reconstruct(
 
     Parameters
     ----------
-    dataset : Dataset or str
-        From `aerocues.open_dataset`, or its text form; images are then matched with their
-        neighbours by GPS, or where those are not known, with all others.
+    dataset : Dataset, str, path or sequence of paths
+        From `aerocues.open_dataset`, or what that would be given; images are then read as those of
+        `results`, and matched with their neighbours by GPS, or where those are not known, with all
+        others.
+    combinations : str, Combination or iterable of both, optional
+        Globs such as ``"ORB-*-HAM-BF"``, or combinations.
     output : path
         Folder of models, made where it is missing: a folder a combination.
-    combinations : str or iterable, optional
-        Globs such as ``"ORB-*-HAM-BF"``, or combinations.
-    results : path, optional
+    results : Results or path, optional
         Results of the same images: their best combinations are reconstructed where none are
         named, and the figures and clouds are stored there, too.
     top : int, optional
         How many of the best; 10 by default.
-    options : ReconstructionOptions, optional
-    observer : ReconstructionObserver, optional
-        Told how it goes on.
+    preset : str or Preset, optional
+        Parameters of the methods; by default those of `results`, or ``"default"``.
+    max_keypoints : int
+        The strongest keypoints that are kept in an image; 0 keeps all.
+    intrinsics : {"fixed", "refine"}
+        Whether focal length and distortion are those known before, or adjusted with the model.
+    focal_length : float, optional
+        Pixels, in place of what EXIF tells.
+    mapper : {"incremental", "global"}
+        Of COLMAP.
+    reference : str or Combination, optional
+        To whose cloud distances are measured; the largest model by default.
+    colours, undistort : bool
+        Whether points are coloured; whether undistorted images are written for a dense step.
+    seed : int
+        Of every stage.
+    features : path, optional
+        Folder in which features are kept, and found if a run kept them there; that of `results`
+        by default.
+    workers : int, optional
+        Processes at a time; as many as there are cores by default.
+    timeout : float or str
+        CPU time of one stage: seconds, or a text such as ``"30min"``.
+    memory_limit : float, optional
+        Gigabytes of one process; by default 80 % of the machine's divided by the workers.
+    retry_failed : bool
+        Try again what crashed, raised an error, or ran out of time or memory.
+    progress : callable, optional
+        Called with each `aerocues.Event`.
 
     Returns
     -------
@@ -62,34 +106,42 @@ def reconstruct(
     Raises
     ------
     AerocuesError
-        If the scene, the selection or a folder does not allow it. A reconstruction that fails is
-        a row with its reason, and no error.
+        If an argument, the scene, the selection or a folder does not allow it. A reconstruction
+        that fails is a row with its reason, and no error.
     """
-    scene = open_as_measured(dataset, results) if isinstance(dataset, str) else dataset
+    if combinations is not None and top is not None:
+        raise ArgumentError("`top` chooses among `results`; leave `top` or `combinations` out")
     if combinations is None and results is None:
         raise ReconstructionError(
-            "no combinations: name some with --combinations, or results with --from"
+            "there are no combinations; give some as `combinations`, or measured `results`"
         )
-    store = open_results(results, scene) if results is not None else None
-    options = options or ReconstructionOptions()
-    if options.features is None:
-        options = replace(options, features=features_of_results(results))
-    if combinations is None:
-        assert results is not None
-        combinations = best_combinations(results, scene.name, top or TOP)
-    return reconstruct_scene(
-        scene,
-        combinations,
-        Path(output),
-        options,
-        observer or ReconstructionObserver(),
-        store,
+    if top is not None:
+        check_whole("top", top, 1)
+    measured = None if results is None else as_results(results)
+    options = ReconstructionOptions(
+        preset=preset or preset_of_results(measured),
+        protocol=ReconstructionProtocol(seed, max_keypoints, intrinsics, focal_length, mapper),
+        wanted=Wanted(colours, undistort),
+        reference=None if reference is None else str(reference),
+        features=features or features_of_results(measured),
+        workers=workers,
+        timeout=timeout,
+        memory_limit=memory_limit,
+        retry_failed=retry_failed,
     )
+    scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)
+    store = None if measured is None else open_results(measured.folder, scene)
+    if combinations is None and measured is not None:
+        combinations = best_combinations(
+            measured, scene.name, RECONSTRUCTED if top is None else top
+        )
+    assert combinations is not None
+    return reconstruct_scene(scene, combinations, Path(output), options, progress, store)
 
 
 def open_as_measured(
-    spec: str,
-    results: str | Path | None,
+    dataset: str | Path | Sequence[str | Path],
+    results: Results | None,
     *,
     pairs: str | None = None,
     max_width: int | None = None,
@@ -101,18 +153,18 @@ def open_as_measured(
 
     Parameters
     ----------
-    spec, pairs, max_width, equalize, sequences, subset
+    dataset, pairs, max_width, equalize, sequences, subset
         As `aerocues.open_dataset` takes them, so that a `max_width` of 0 is for images as they are
         whatever the results were measured on; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
-    results : path, optional
+    results : Results, optional
     """
     measured = settings_of_results(results)
     width = measured.get("max_width", "full")
     if max_width is None and width != "full":
         max_width = int(width)
     return open_scene(
-        spec,
+        dataset,
         pairs=pairs,
         max_width=max_width,
         equalize=equalize or measured.get("equalize", "none"),
@@ -121,39 +173,33 @@ def open_as_measured(
     )
 
 
-def best_combinations(results: str | Path, dataset: str, top: int) -> list[str]:
+def best_combinations(results: Results, dataset: str, top: int) -> list[str]:
     """The best combinations of measured results by CUES, without figures of reconstructions."""
-    measured = table_of(Results(results), dataset=dataset, reconstruction=False)
+    measured = table_of(results, dataset=dataset, reconstruction=False)
     scores = score(measured.table, measured.preset.settings)
     names = scores.table.alternatives
     return [names[position] for position in scores.order[:top]]
 
 
-def settings_of_results(results: str | Path | None) -> dict[str, str]:
-    """How images of results were read: ``max_width``, ``equalize`` and ``subset``.
-
-    Raises
-    ------
-    StoreError
-        If `results` is no results folder.
-    """
+def settings_of_results(results: Results | None) -> dict[str, str]:
+    """How images of results were read: ``max_width``, ``equalize`` and ``subset``."""
     if results is None:
         return {}
-    read = (Results(results).settings.get("dataset") or {}).get("settings", {})
+    read = (results.settings.get("dataset") or {}).get("settings", {})
     wanted = ("max_width", "equalize", "subset")
     return {name: str(read[name]) for name in wanted if read.get(name) is not None}
 
 
-def features_of_results(results: str | Path | None) -> Path | None:
+def features_of_results(results: Results | None) -> Path | None:
     """The folder in which a run kept its features, if it is still there."""
-    kept = None if results is None else Results(results).settings.get("features")
+    kept = None if results is None else results.settings.get("features")
     return Path(kept) if kept and Path(kept).is_dir() else None
 
 
-def preset_of_results(results: str | Path | None) -> Preset:
+def preset_of_results(results: Results | None) -> Preset:
     """The preset that results were measured under; the default one where that is not known."""
     if results is not None:
-        settings = Results(results).settings
+        settings = results.settings
         if "preset_parts" in settings or settings.get("preset") in preset_names():
             return recorded_preset(settings)
     return preset_named("default")

@@ -16,7 +16,7 @@ from aerocues.cli.program import exit_code
 from aerocues.datasets.catalog import open_dataset
 from aerocues.errors import SimulationError
 from aerocues.simulation.camera import Pose
-from aerocues.simulation.flight import Flown, Settings, simulate
+from aerocues.simulation.flight import Flown, Settings, fly
 from aerocues.simulation.rendering import Rendering, render
 from aerocues.simulation.scenes import build_scene, stage
 from aerocues.simulation.sensor import develop
@@ -72,7 +72,7 @@ def test_a_survey_is_collected_with_its_truth(tmp_path: Path, flavour: str, told
 def test_what_the_embedded_renderer_shows_is_what_it_would_have_written(tmp_path: Path) -> None:
     settings = Settings(width=60, height=40)
     survey = Survey("two", SURVEY.shots[:2])
-    assert simulate(tmp_path / "own", survey, settings) == Flown(2, 0)
+    assert fly(tmp_path / "own", survey, settings) == Flown(2, 0)
     # The same scene behind the protocol; each image has the noise of its number.
     from aerocues.simulation.flight import _half
 
@@ -166,7 +166,7 @@ def test_a_wrong_flavour_names_the_right_one(tmp_path: Path) -> None:
     for server, asked in (("airsim", "cosys"), ("cosys", "airsim")):
         with (
             serving(Simulator(server)) as port,
-            pytest.raises(SimulationError, match=f"--flavour {server}"),
+            pytest.raises(SimulationError, match=f"`flavour=.{server}"),
         ):
             collect(tmp_path, SURVEY, replace(ASKED, port=port, flavour=asked))
 
@@ -187,7 +187,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
         told = capsys.readouterr().out
         assert re.search(rf"6 images .*{tmp_path}.*aerocues run airsim:", told)
         assert exit_code([*words, "--size", "50x40"]) == 2
-        assert "--size 60x40" in capsys.readouterr().err
+        assert "60 x 40" in capsys.readouterr().err
     assert exit_code(words) == 2
     told = capsys.readouterr().err
     assert told.startswith("error: no simulator answers")

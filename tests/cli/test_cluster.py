@@ -14,7 +14,7 @@ from aerocues.cli.cluster import machine_lines
 from tests.cli.conftest import Call
 from tests.evaluation.cluster import Cluster
 
-RUN = ("--combinations", "ORB-ORB-HAM-BF", "--limit", "1")
+RUN = ("--combinations", "ORB-ORB-HAM-BF", "--max-pairs", "1")
 
 
 @pytest.fixture

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
 
 from aerocues.cli.live import LiveDisplay
-from aerocues.cli.progress import PlainLines, Tally, spoken_seconds
-from aerocues.evaluation.engine import Activity, Finished
+from aerocues.cli.progress import PlainLines, Tally
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.plan import Exclusion, Plan
 from aerocues.evaluation.planned_rows import PlannedRow
+from aerocues.evaluation.run_progress import RunProgress
 from aerocues.evaluation.unit import PairWork, Unit
 from aerocues.methods.combination import Combination
+from aerocues.phrases import spoken_seconds
 from aerocues.processes.call import StageCall
+from aerocues.progress import Activity, Event, StageProgress
 
 
 @dataclass
@@ -71,68 +75,69 @@ def test_spans_of_time_are_spoken(seconds: float, text: str) -> None:
 def test_rows_that_were_there_count_and_cost_tells_the_time_left() -> None:
     clock = Clock()
     tally = Tally(clock=clock)
-    tally.planned(PLAN, "shared")
+    run = RunProgress(tally)
+    run.planned(PLAN, "shared")
     assert tally.seconds_left() is None
     assert tally.progress() == "60 of 100 rows (60 %), 0 s so far"
     clock.now += 60
-    tally.finished(done(DEAR))
+    run.finished(done(DEAR))
     # 30 of 40 parts of the cost took 60 s: the rest takes 20.
     assert tally.progress() == "80 of 100 rows (80 %), 1 min 00 s so far, about 20 s left"
     clock.now += 5
     assert tally.seconds_left() == pytest.approx(15)
     clock.now += 60
     assert tally.seconds_left() == 0
-    tally.finished(done(CHEAP, "crashed"))
-    assert (tally.rows_measured, tally.rows_stored, tally.share) == (40, 100, 1.0)
+    run.finished(done(CHEAP, "crashed"))
+    (rows,) = tally.counted
+    assert (rows.first, rows.added, rows.done, rows.total) == (60, 40, 100, 100)
     assert tally.outcomes() == "ok 20, crashed 20"
-
-
-def test_a_plan_without_rows_is_done() -> None:
-    tally = Tally()
-    assert tally.share == 1.0
-    tally.planned(plan_of(rows=0), "shared")
-    assert tally.share == 1.0
+    assert tally.elapsed == 125
 
 
 def test_plain_lines_come_at_most_every_ten_seconds(capsys: pytest.CaptureFixture[str]) -> None:
     clock = Clock()
-    lines = PlainLines(clock=clock)
+    run = RunProgress(PlainLines(clock=clock))
     small = [unit(1, 1.0) for _ in range(100)]
-    lines.planned(plan_of(*small, rows=100), "shared")
+    run.planned(plan_of(*small, rows=100), "shared")
     for one in small:
         clock.now += 0.5
-        lines.finished(done(one))
-        lines.working([])
+        run.finished(done(one))
+        run.watch([])
     printed = capsys.readouterr().err.splitlines()
     assert printed[0] == "100 rows to measure in 100 units of work"
     # 50 s, one line every 10 s, each at least a tenth further.
     assert [line.split()[0] for line in printed[1:]] == ["20", "40", "60", "80", "100"]
 
 
-def test_plain_lines_come_each_minute_even_where_nothing_moves(
+def test_plain_lines_come_each_minute_and_say_what_lasts_so_long(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     clock = Clock()
-    lines = PlainLines(clock=clock)
-    lines.planned(plan_of(DEAR, rows=20), "shared")
-    for _ in range(180):
+    run = RunProgress(PlainLines(clock=clock))
+    run.planned(plan_of(DEAR, rows=20), "shared")
+    call = StageCall("match", 0, "1.png and 2.png", "ORB", "ORB", "ORB-ORB-HAM-BF")
+    for seconds in range(180):
         clock.now += 1
-        lines.working([])
-    assert len(capsys.readouterr().err.splitlines()) == 1 + 3
+        run.watch([Activity(0, call, seconds), Activity(1, None, 0.0)])
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1 + 3
+    assert lines[-1] == (
+        "0 of 20 rows (0 %), 3 min 00 s so far; match ORB-ORB-HAM-BF on 1.png and 2.png"
+    )
 
 
 def test_plain_lines_say_at_once_and_each_minute_that_no_worker_is_there(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     clock = Clock()
-    lines = PlainLines(clock=clock)
-    lines.planned(plan_of(DEAR, rows=20), "shared")
+    run = RunProgress(PlainLines(clock=clock))
+    run.planned(plan_of(DEAR, rows=20), "shared")
     for seconds in range(130):
         clock.now += 1
-        lines.working([Activity(0, None, seconds, "a worker with the resource board")])
-    lines.working([Activity(0, None, 0.0)])
+        run.watch([Activity(0, None, seconds, "a worker with the resource board")])
+    run.watch([Activity(0, None, 0.0)])
     clock.now += 1
-    lines.working([Activity(0, None, 5.0, "a worker")])
+    run.watch([Activity(0, None, 5.0, "a worker")])
     printed = capsys.readouterr().err.splitlines()[1:]
     assert [line.partition(";")[0] for line in printed] == [
         "waiting for a worker with the resource board, 0 s so far",
@@ -143,67 +148,99 @@ def test_plain_lines_say_at_once_and_each_minute_that_no_worker_is_there(
     assert printed[0].endswith("; 0 of 20 rows (0 %), 1 s so far")
 
 
+def test_plain_lines_tell_now_and_then_how_things_stand(capsys: pytest.CaptureFixture[str]) -> None:
+    clock = Clock()
+    stage = StageProgress(PlainLines(clock=clock), "racing", "measurements", total=50)
+    stage.tell(message="the race begins")
+    for second in range(1, 31):
+        clock.now += 1
+        stage.tell(done=second, standing=f"{second} measurements, ORB leads")
+    assert capsys.readouterr().err.splitlines() == [
+        "the race begins",
+        *(f"{second} measurements, ORB leads" for second in (10, 20, 30)),
+    ]
+
+
 def test_the_live_display_shows_workers_rows_and_failures() -> None:
     from rich.console import Console
 
     clock = Clock()
     display = LiveDisplay(clock=clock)
+    run = RunProgress(display)
 
     def shown() -> list[str]:
         console = Console(file=io.StringIO(), width=100, record=True)
         console.print(display.picture())
         return console.export_text().splitlines()
 
-    display.hashing(3, 7)
-    assert shown() == ["reading images: 3 of 7"]
-    display.planned(PLAN, "shared")
+    run.read(3, 7)
+    assert "reading images: 3 of 7 images (42 %)" in shown()[0]
+    run.planned(PLAN, "shared")
     clock.now += 60
-    display.finished(done(DEAR, "timeout"))
+    run.finished(done(DEAR, "timeout"))
     call = StageCall("match", 0, "1.png and " + "long/" * 30, "ORB", "ORB", "ORB-ORB-HAM-BF")
-    display.working([Activity(0, call, 12.3), Activity(1, None, 0.0)])
+    run.watch([Activity(0, call, 12.3), Activity(1, None, 0.0)])
     bar, first, second, outcomes = shown()
-    assert "80 of 100 rows (80 %), 1 min 00 s so far, about 20 s left" in bar
+    assert "80 of 100 rows (80 %), 1 min 00 s so far, about 20 s" in bar
     assert first.startswith("worker 1  match ORB-ORB-HAM-BF on 1.png")
     assert len(first) == 100
-    assert second.split() == ["worker", "2", "between", "two", "units"]
+    assert second.split() == ["worker", "2", "between", "two", "calls"]
     assert outcomes.split() == ["so", "far", "timeout", "20"]
-    display.working([Activity(0, None, 65.0, "a worker with the resource board")])
+    run.watch([Activity(0, None, 65.0, "a worker with the resource board")])
     assert shown()[1].strip() == "waiting for a worker with the resource board, 1 min 05 s so far"
+    display(Event("racing", standing="ORB leads"))
+    assert shown() == ["ORB leads"]
+
+
+def on_a_screen(tell: Callable[[RunProgress], None]) -> str:
+    """What a live display writes."""
+    from rich.console import Console
+    from rich.live import Live
+
+    screen = io.StringIO()
+    console = Console(file=screen, width=40, force_terminal=True, color_system=None)
+    with Live(console=console, auto_refresh=False, transient=True) as live:
+        tell(RunProgress(LiveDisplay(live=live)))
+    return screen.getvalue()
 
 
 @pytest.mark.parametrize("units", [(), (DEAR,)])
 def test_what_images_rule_out_is_told_by_reason_even_where_nothing_is_left(
     units: tuple[Unit, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from rich.console import Console
-    from rich.live import Live
-
-    PlainLines().planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS), "shared")
+    plan = plan_of(*units, rows=20, exclusions=EXCLUSIONS)
+    RunProgress(PlainLines()).planned(plan, "shared")
     assert capsys.readouterr().err.splitlines()[:2] == LEFT_OUT
-    screen = io.StringIO()
-    console = Console(file=screen, width=40, force_terminal=True, color_system=None)
-    with Live(console=console, auto_refresh=False, transient=True) as live:
-        LiveDisplay(live=live).planned(plan_of(*units, rows=20, exclusions=EXCLUSIONS), "shared")
+    screen = on_a_screen(lambda run: run.planned(plan, "shared"))
     for line in LEFT_OUT:
-        assert line in screen.getvalue()
+        assert line in screen
 
 
 def test_a_second_pass_is_told_apart_from_the_rows_that_are_there() -> None:
-    clock = Clock()
-    tally = Tally(clock=clock)
-    tally.planned(PLAN, "estimated")
-    assert tally.stored() == "60 rows are stored"
-    tally.finished(done(DEAR))
-    tally.finished(done(CHEAP))
-    assert tally.measured() == "measured 40 rows"
-    tally.planned(plan_of(CHEAP, rows=20), "exclusive")
-    assert tally.stored() == "100 rows are stored, 0 of 20 timed alone"
-    tally.finished(done(CHEAP))
-    assert tally.stored() == "100 rows are stored, 20 of 20 timed alone"
-    assert tally.measured() == "measured 40 rows and timed 20 alone"
-    assert tally.there_already() == "all 100 rows are there already, 20 of them timed alone"
+    tally = Tally()
+    run = RunProgress(tally)
+    assert tally.kept() == ""
+    run.read(3, 3)
+    assert tally.kept() == ""
+    run.planned(PLAN, "estimated")
+    assert tally.kept() == "60 of 100 rows are finished"
+    run.finished(done(DEAR))
+    run.finished(done(CHEAP))
+    run.planned(plan_of(CHEAP, rows=20), "exclusive")
+    assert tally.kept() == "100 of 100 rows, 0 of 20 rows timed alone are finished"
+    run.finished(done(CHEAP))
+    assert [each.added for each in tally.counted] == [40, 20]
 
 
-def test_rows_that_count_no_longer_are_told(capsys: pytest.CaptureFixture[str]) -> None:
-    PlainLines().set_aside(1200)
-    assert "1,200 rows" in capsys.readouterr().err
+def test_rows_that_count_no_longer_are_told_in_options(capsys: pytest.CaptureFixture[str]) -> None:
+    RunProgress(PlainLines()).set_aside(1200)
+    line = capsys.readouterr().err
+    assert line.startswith("1,200 rows")
+    assert "--output" in line
+
+
+def test_an_event_in_one_line() -> None:
+    assert str(Event("measuring", "rows", 1200, 13600)) == "measuring: 1,200 of 13,600 rows"
+    assert str(Event("racing", standing="ORB leads")) == "racing: ORB leads"
+    assert str(Event("racing", message="it begins")) == "racing: it begins"
+    assert str(Event("racing")) == "racing"

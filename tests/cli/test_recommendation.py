@@ -8,12 +8,12 @@ import numpy as np
 import polars as pl
 import pytest
 
-from aerocues.cli.console import likelihood
 from aerocues.cli.recommendation import answer
 from aerocues.datasets.catalog import open_dataset
-from aerocues.scoring.objectives import objective_named
+from aerocues.phrases import likelihood
+from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.tuning.race import RaceOutcome, Round
-from aerocues.tuning.recommend import Recommendation
+from aerocues.tuning.recommendation import Recommendation
 from aerocues.tuning.representative import Seen
 
 COLUMNS = (
@@ -41,7 +41,7 @@ def found(photos: Path, chances: Sequence[float], unseen: tuple[int, ...] = ()) 
         open_dataset(str(photos)),
         Seen(tuple(range(3 - len(unseen))), (), unseen),
         3,
-        objective_named("balanced"),
+        OBJECTIVES["balanced"],
         ended,
         pl.DataFrame(table),
         7,

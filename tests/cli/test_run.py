@@ -18,7 +18,7 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
 ) -> None:
     output = tmp_path / "my results"
     words = ("run", photos, "-o", output, "--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
-    first = call(*words, "--limit", 2)
+    first = call(*words, "--max-pairs", 2)
     assert first.code == 0
     assert re.search(r"1 ORB-ORB-HAM-BF +[01]\.\d{3} .* 100 % +[01]\.\d{3} +\d+ ", first.out)
     assert "photos: 1 combination on 2 pairs" in first.out
@@ -27,7 +27,7 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert f"aerocues score '{output}'" in first.out
     assert "measured 2 rows" in first.err
 
-    second = call(*words, "--limit", 2)
+    second = call(*words, "--max-pairs", 2)
     assert "all 2 rows" in second.err
     assert second.out == first.out
 
@@ -104,7 +104,7 @@ def gray_copy(photos: Path, folder: Path) -> Path:
 
 def test_a_run_tells_what_gray_images_rule_out(call: Call, photos: Path, tmp_path: Path) -> None:
     gray = gray_copy(photos, tmp_path / "gray")
-    words = ("run", gray, "-o", tmp_path / "results", "--workers", 1, "--limit", 2)
+    words = ("run", gray, "-o", tmp_path / "results", "--workers", 1, "--max-pairs", 2)
     told = "left out: 2 combinations on 2 pairs"
 
     alone = call(*words, "--combinations", "ORB-LUCID-HAM-*")
@@ -164,7 +164,7 @@ def test_a_dry_run_tells_what_gray_images_rule_out(
         (("--combinations", "FREAK"), "'*-FREAK-*'"),
         (("--combinations", "sift-sift"), "'SIFT-SIFT-*'"),
         (("--timeout", "0"), "timeout"),
-        (("--limit", "none"), "--limit"),
+        (("--max-pairs", "none"), "--max-pairs"),
     ],
 )
 def test_mistakes_are_told_in_one_line(

@@ -7,7 +7,7 @@ import pytest
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Source
 from aerocues.datasets.kinds import CATALOG
-from aerocues.errors import DatasetError
+from aerocues.errors import ArgumentError, DatasetError
 
 
 def test_the_catalog_is_complete() -> None:
@@ -52,13 +52,13 @@ def test_a_file_is_no_dataset(image_folder: Path) -> None:
 
 
 def test_options_that_make_no_sense(image_folder: Path) -> None:
-    with pytest.raises(DatasetError, match="--pairs"):
+    with pytest.raises(DatasetError, match="`pairs`"):
         open_dataset("synthetic", pairs="exhaustive")
-    with pytest.raises(DatasetError, match="--limit 0"):
-        open_dataset("synthetic", limit=0)
-    with pytest.raises(DatasetError, match="--max-width 3"):
+    with pytest.raises(ArgumentError, match="`max_pairs`"):
+        open_dataset("synthetic", max_pairs=0)
+    with pytest.raises(ArgumentError, match="`max_width`"):
         open_dataset(str(image_folder), max_width=3)
-    with pytest.raises(DatasetError, match="histogram"):
+    with pytest.raises(ArgumentError, match="histogram"):
         open_dataset(str(image_folder), equalize="loud")
 
 
@@ -80,7 +80,7 @@ def test_a_folder_called_like_a_kind(
 
 
 def test_limit_keeps_the_first_pairs_and_their_images() -> None:
-    dataset = open_dataset("synthetic", limit=2)
+    dataset = open_dataset("synthetic", max_pairs=2)
     assert [image.name for image in dataset.images] == [
         "original",
         "rotation_015",
@@ -90,7 +90,7 @@ def test_limit_keeps_the_first_pairs_and_their_images() -> None:
 
 
 def test_sequences_are_globs() -> None:
-    dataset = open_dataset("synthetic", sequences=["SCALE", "int*"], limit=7)
+    dataset = open_dataset("synthetic", sequences=["SCALE", "int*"], max_pairs=7)
     whole = {(p.image_1, p.image_2): p.index for p in open_dataset("synthetic").pairs}
     assert len(dataset.pairs) == 7
     assert [p.index for p in dataset.pairs] == [whole[p.image_1, p.image_2] for p in dataset.pairs]
@@ -116,8 +116,8 @@ def test_a_dataset_tells_how_to_open_it_again(
     image_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(image_folder.parent)
-    first = open_dataset(image_folder.name, max_width=64, limit=1)
-    assert first.source == Source(str(image_folder), max_width=64, limit=1)
+    first = open_dataset(image_folder.name, max_width=64, max_pairs=1)
+    assert first.source == Source(str(image_folder), max_width=64, max_pairs=1)
     monkeypatch.chdir(tmp_path)
     again = open_dataset(**vars(first.source))
     assert again.source == first.source

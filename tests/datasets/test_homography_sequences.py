@@ -146,7 +146,7 @@ def test_truth_of_graf_follows_the_size(shared_data: Path) -> None:
 
 
 def test_truth_of_hpatches_follows_sizes_that_differ(shared_data: Path) -> None:
-    dataset = open_dataset(f"hpatches:{shared_data / 'hpatches'}", max_width=500, limit=1)
+    dataset = open_dataset(f"hpatches:{shared_data / 'hpatches'}", max_width=500, max_pairs=1)
     errors = np.linalg.norm(sift_errors(dataset, 0), axis=1)
     assert float(np.median(errors)) < 1.5
 

@@ -52,7 +52,7 @@ def test_views_of_the_sky_may_share_it() -> None:
 
 def test_overlap_needs_depth() -> None:
     row = [*images(0), replace(images(0, 1)[1], truth=None)]
-    with pytest.raises(DatasetError, match=r"\b1 .*--pairs consecutive"):
+    with pytest.raises(DatasetError, match=r"\b1 .*pairs=.consecutive"):
         Overlapping(0.5).pairs(row)
 
 

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.methods.arrays import Features, Keypoints, Matches
-from aerocues.methods.opencv import from_opencv, to_opencv
 
 MARK = (1, 254, 3)
 HEALTHY = "AEROCUES_TEST_HEALTHY"
@@ -120,7 +119,7 @@ class FaultyDetector:
         if is_marked(image):
             FAULTS[self.fault]()
             return [1, 2, 3]
-        return from_opencv(self.native.detect(image))
+        return Keypoints.from_opencv(self.native.detect(image))
 
 
 class FaultyDescriptor:
@@ -136,8 +135,8 @@ class FaultyDescriptor:
         if is_marked(image):
             FAULTS[self.fault]()
             return Features(keypoints, np.zeros((len(keypoints), 32), np.float32))
-        native, rows = self.native.compute(image, to_opencv(keypoints))
-        return Features(from_opencv(native), rows)
+        native, rows = self.native.compute(image, keypoints.to_opencv())
+        return Features(Keypoints.from_opencv(native), rows)
 
 
 class FaultyMatcher:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
-from aerocues.evaluation.engine import Finished, Watch
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.evaluator import Evaluator
 from aerocues.evaluation.unit import Context, Unit
+from aerocues.progress import Watch
 
 
 class InlineEngine:

@@ -6,8 +6,9 @@ import dataclasses
 import functools
 import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -20,12 +21,9 @@ from aerocues.evaluation import dask_worker
 from aerocues.evaluation import run as running
 from aerocues.evaluation.dask_engine import DaskEngine
 from aerocues.evaluation.dask_scheduler import connected
-from aerocues.evaluation.engine import Activity, Finished
-from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.run import Limits, Observer
+from aerocues.progress import Event
 from aerocues.results.measured_results import Results
 from aerocues.results.store import Store
-from aerocues.results.timing import Timing
 from aerocues.results.versions import software_versions
 from tests.evaluation.cluster import Cluster
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
@@ -59,7 +57,7 @@ def wait_until(done: Callable[[], bool], seconds: float = 60) -> None:
         time.sleep(0.05)
 
 
-class During(Observer):
+class During:
     """Calls a function once when `rows` rows are there and a worker is at work."""
 
     def __init__(self, action: Callable[[], None], rows: int = 1) -> None:
@@ -67,12 +65,10 @@ class During(Observer):
         self.left = rows
         self.seen: set[str] = set()
 
-    def finished(self, finished: Finished) -> None:
-        self.left -= len(finished.rows)
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        self.seen |= {activity.call.stage for activity in activities if activity.call}
-        if self.action and self.left <= 0 and activities:
+    def __call__(self, event: Event) -> None:
+        self.left -= len(event.rows)
+        self.seen |= {activity.call.stage for activity in event.workers if activity.call}
+        if self.action and self.left <= 0 and event.workers and not event.rows:
             action, self.action = self.action, None
             action()
 
@@ -86,7 +82,7 @@ def test_rows_equal_those_of_the_local_engine(
         assert DaskEngine(client).dashboard
         results = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
         again = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
-    local = run(views, FEW, tmp_path / "local", limits=Limits(workers=1))
+    local = run(views, FEW, tmp_path / "local", workers=1)
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
     assert len(Store(again.folder).rows()) == len(local.table())
     assert results.table()["machine"].to_list() == local.table()["machine"].to_list()
@@ -118,7 +114,7 @@ def test_workers_that_die_and_one_that_comes_late(cluster: Cluster, tmp_path: Pa
                 worker.send_signal(signal.SIGKILL)
 
         observer = During(kill_one_and_add_one)
-        results = run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), observer=observer)
+        results = run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), progress=observer)
     assert observer.action is None
     assert observer.seen
     undisturbed = run(dataset, MANY, tmp_path / "u", engine=InlineEngine())
@@ -137,7 +133,7 @@ def test_an_interruption_keeps_what_was_finished_and_ends_processes(
     with connected(cluster.address) as client:
         engine = DaskEngine(client, longest_seconds=0)
         with pytest.raises(KeyboardInterrupt):
-            run(dataset, MANY, tmp_path / "r", engine=engine, observer=During(interrupt))
+            run(dataset, MANY, tmp_path / "r", engine=engine, progress=During(interrupt))
         wait_until(lambda: not workers_of(str(tmp_path)))
         kept = Results(tmp_path / "r").status()
         assert 0 < kept.planned - kept.left < kept.planned
@@ -154,7 +150,7 @@ def test_a_lost_scheduler_is_an_error(cluster: Cluster, tmp_path: Path) -> None:
         connected(cluster.address) as client,
         pytest.raises(EngineError, match="scheduler"),
     ):
-        run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), observer=observer)
+        run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), progress=observer)
     assert len(Results(tmp_path / "r").table())
 
 
@@ -176,10 +172,10 @@ def test_faults_are_recorded_as_by_the_local_engine(
     dataset = dataclasses.replace(faulty, pairs=faulty.pairs[:2])
     combinations = "SEGFAULT-ORB-HAM-BF,ORB-D_SLEEP-HAM-BF,FAIL-ORB-HAM-BF,ORB-ORB-HAM-*"
     with connected(cluster.address) as client:
-        engine = DaskEngine(client, timeout=2, memory_limit_mb=700)
+        engine = DaskEngine(client, timeout=2, memory_limit=700 / 1024)
         results = run(dataset, combinations, tmp_path / "dask", engine=engine)
-    limits = Limits(workers=1, timeout=2, memory_limit_mb=700)
-    local = run(dataset, combinations, tmp_path / "local", limits=limits)
+    limits: dict[str, Any] = {"workers": 1, "timeout": 2, "memory_limit": 700 / 1024}
+    local = run(dataset, combinations, tmp_path / "local", **limits)
     assert {"crashed", "timeout", "error", "ok"} <= set(local.table()["status"])
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
 
@@ -227,15 +223,15 @@ def test_a_worker_without_the_images_is_an_error(
     dataset = write_dataset(tmp_path / "images", strip(2))
     cluster.add_worker()
 
-    class Changing(Observer):
-        def planned(self, plan: Plan, timing: Timing) -> None:
+    def change_once(event: Event) -> None:
+        if event.stage == "measuring" and event.message:
             change(tmp_path / "images" / "view_1.png")
 
     with (
         connected(cluster.address) as client,
         pytest.raises(EngineError, match=words),
     ):
-        run(dataset, FEW, tmp_path / "r", engine=DaskEngine(client), observer=Changing())
+        run(dataset, FEW, tmp_path / "r", engine=DaskEngine(client), progress=change_once)
 
 
 def test_a_worker_with_other_versions_is_an_error(
@@ -275,20 +271,18 @@ def test_only_workers_with_the_resource_are_used(
     used: list[psutil.Process] = []
     told: list[str] = []
 
-    class AddingOne(Observer):
-        def working(self, activities: Sequence[Activity]) -> None:
-            told.extend(activity.waiting_for for activity in activities)
-            if len(cluster.workers) == 1:
-                cluster.add_worker("--no-nanny", "--resources", "board=1")
-
-        def finished(self, finished: Finished) -> None:
+    def add_one(event: Event) -> None:
+        told.extend(activity.waiting_for for activity in event.workers)
+        if event.workers and len(cluster.workers) == 1:
+            cluster.add_worker("--no-nanny", "--resources", "board=1")
+        if event.rows:
             used.extend(psutil.Process(plain.pid).children())
 
     with connected(cluster.address) as client:
         client.wait_for_workers(1)
         engine = DaskEngine(client, resource="board")
         assert engine.threads == 0
-        results = run(views, FEW, tmp_path / "r", engine=engine, observer=AddingOne())
+        results = run(views, FEW, tmp_path / "r", engine=engine, progress=add_one)
     assert len(results.table()) == 9
     assert used == []
     assert told[0] == "a worker with the resource board"

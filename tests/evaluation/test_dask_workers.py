@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,9 +16,9 @@ from distributed import KilledWorker
 from aerocues.datasets.dataset import Dataset
 from aerocues.evaluation import dask_engine
 from aerocues.evaluation.dask_engine import DaskEngine
-from aerocues.evaluation.engine import Activity
-from aerocues.evaluation.run import Observer, run
+from aerocues.evaluation.run import run
 from aerocues.evaluation.unit import Unit
+from aerocues.progress import Event
 
 ADDRESS = "tcp://board:4000"
 
@@ -92,14 +91,13 @@ def test_waiting_for_a_worker_is_told_until_one_comes(
     client.add_worker(4)
     told: list[str] = []
 
-    class Waiting(Observer):
-        def working(self, activities: Sequence[Activity]) -> None:
-            told.extend(activity.waiting_for for activity in activities)
-            if len(told) == 3:
-                client.add_worker(1, board=1)
+    def wait(event: Event) -> None:
+        told.extend(activity.waiting_for for activity in event.workers if not event.rows)
+        if len(told) == 3:
+            client.add_worker(1, board=1)
 
     engine = DaskEngine(client, resource="board")
-    run(views, "ORB-ORB-HAM-BF", tmp_path, timing="shared", engine=engine, observer=Waiting())
+    run(views, "ORB-ORB-HAM-BF", tmp_path, timing="shared", engine=engine, progress=wait)
     assert told == ["a worker with the resource board"] * 3
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.run import Limits, run
+from aerocues.evaluation.run import run
 from aerocues.methods.registry import opencv_methods
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import Rows, assert_same_rows, rows_of, strip, write_dataset
@@ -30,7 +30,7 @@ def dataset(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 
 def measured(dataset: Dataset, folder: Path, workers: int, combinations: list[str]) -> Rows:
-    return rows_of(run(dataset, combinations, folder, limits=Limits(workers=workers)).table())
+    return rows_of(run(dataset, combinations, folder, workers=workers).table())
 
 
 def without_crashes(rows: Rows, other: Rows) -> Rows:

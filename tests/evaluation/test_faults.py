@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.evaluation.run import Limits, run
+from aerocues.evaluation.run import run
 from aerocues.results.measured_results import Results
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine
@@ -19,17 +20,17 @@ from tests.methods.distribution import write_distribution
 # Pairs 0-1, 1-2, 2-3, 3-4 of five views; the marked one is view 2: pairs 1 and 2 suffer.
 GUILTY = "view_2.png"
 SUFFERING = {1, 2}
-LIMITS = Limits(workers=2, timeout=2, memory_limit_mb=700)
+LIMITS: dict[str, Any] = {"workers": 2, "timeout": 2, "memory_limit": 700 / 1024}
 
 OUTCOMES = {
     "SEGFAULT": ("crashed", "SIGSEGV"),
     "LEAVE": ("crashed", "exit code 3"),
     "STRANGE": ("crashed", "KeyboardInterrupt"),
-    "SLEEP": ("timeout", "--timeout"),
-    "BURN": ("timeout", "2 CPU seconds (--timeout)"),
+    "SLEEP": ("timeout", "idle for 2 seconds"),
+    "BURN": ("timeout", "2 CPU seconds"),
     "ALLOCATE": ("out_of_memory", "Unable to allocate"),
     "GROW": ("out_of_memory", "Unable to allocate"),
-    "GROW_SHARED": ("out_of_memory", "700 MB (--memory-limit)"),
+    "GROW_SHARED": ("out_of_memory", "700 MB"),
     "FAIL": ("error", "ValueError: this image is not to my taste"),
     "CV2": ("error", "OpenCV"),
     "NONSENSE": ("error", "TypeError"),
@@ -60,8 +61,8 @@ class Arena:
             self.dataset,
             combinations,
             self.folder / "results",
-            limits=LIMITS,
             retry_failed=retry_failed,
+            **LIMITS,
         )
 
 

@@ -26,12 +26,12 @@ COMBINATIONS = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,MS
 SCRIPT = """
 import sys
 from pathlib import Path
-from aerocues.evaluation.run import Limits, run
+from aerocues.evaluation.run import run
 from tests.evaluation.scenes import dataset_of
 
 images, results, combinations = sys.argv[1:]
 dataset = dataset_of(Path(images), sorted(path.name for path in Path(images).iterdir()))
-run(dataset, combinations, results, limits=Limits(workers=2, timeout=60))
+run(dataset, combinations, results, workers=2, timeout=60)
 """
 
 

@@ -13,20 +13,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aerocues.datasets.dataset import Pair
-from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.passes import Pass, passes
-from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.run import Observer, plan_run, run
-from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.evaluation.run import plan_run, run
+from aerocues.progress import Event
 from aerocues.results.measured_results import Results
 from aerocues.results.metrics import PER_THOUSAND, add_metrics
 from aerocues.results.scaled_times import with_scaled_times
 from aerocues.results.schema import empty_row, polars_schema
-from aerocues.results.timing import Timing
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
 
 FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
+PASSES = {"estimated": "measuring", "shared": "measuring", "exclusive": "timing"}
 STAGES = (
     *("detect_seconds_1", "detect_seconds_2", "describe_seconds_1", "describe_seconds_2"),
     *("match_seconds", "verify_seconds"),
@@ -34,27 +32,14 @@ STAGES = (
 
 
 @dataclass
-class Told(Observer):
-    """Remembers how many rows were set aside."""
-
-    aside: list[int] = field(default_factory=list)
-
-    def set_aside(self, rows: int) -> None:
-        self.aside.append(rows)
-
-
-@dataclass
-class Passing(Observer):
+class Passing:
     """Remembers the passes and the rows that they measured."""
 
-    seen: list[tuple[Timing, int]] = field(default_factory=list)
+    seen: dict[str, int] = field(default_factory=dict)
 
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        self.seen.append((timing, 0))
-
-    def finished(self, finished: Finished) -> None:
-        timing, rows = self.seen[-1]
-        self.seen[-1] = (timing, rows + len(finished.rows))
+    def __call__(self, event: Event) -> None:
+        if event.stage in PASSES.values():
+            self.seen[event.stage] = self.seen.get(event.stage, 0) + len(event.rows)
 
 
 def pairs_of(*sequences: str) -> list[Pair]:
@@ -98,8 +83,8 @@ def test_the_sample_is_spread_over_sequences_and_grows(tmp_path: Path) -> None:
 def test_rows_say_where_their_times_come_from(tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(5))
     seen, engine = Passing(), InlineEngine()
-    results = run(dataset, FEW, tmp_path / "r", timed_pairs=2, engine=engine, observer=seen)
-    assert seen.seen == [("estimated", 12), ("exclusive", 6)]
+    results = run(dataset, FEW, tmp_path / "r", timing_pairs=2, engine=engine, progress=seen)
+    assert seen.seen == {"measuring": 12, "timing": 6}
     table = results.table()
     assert table["timing"].value_counts().sort("timing").rows() == [("exclusive", 6), ("scaled", 6)]
     assert results.status().timings == {"exclusive": 6, "scaled": 6}
@@ -120,19 +105,17 @@ def test_what_is_finished_is_not_timed_again_and_a_larger_sample_goes_on(tmp_pat
         (0, [("exclusive", 3)]),
     ]
     for timed, measured in expected:
-        plans = plan_run(dataset, FEW, tmp_path / "r", timed_pairs=timed)
+        plans = plan_run(dataset, FEW, tmp_path / "r", timing_pairs=timed)
         assert [(timing, plan.rows_left) for timing, plan in plans] == measured
         seen = Passing()
-        run(dataset, FEW, tmp_path / "r", timed_pairs=timed, engine=engine, observer=seen)
-        assert seen.seen == measured
+        run(dataset, FEW, tmp_path / "r", timing_pairs=timed, engine=engine, progress=seen)
+        assert seen.seen == {PASSES[timing]: rows for timing, rows in measured}
 
 
-class StopsBeforeTiming(Observer):
-    """An interruption between the passes."""
-
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        if timing == "exclusive":
-            raise KeyboardInterrupt
+def stop_before_timing(event: Event) -> None:
+    """Interrupt between the passes."""
+    if event.stage == "timing":
+        raise KeyboardInterrupt
 
 
 def test_a_run_that_ended_between_the_passes_has_rows_left_to_time(tmp_path: Path) -> None:
@@ -140,31 +123,38 @@ def test_a_run_that_ended_between_the_passes_has_rows_left_to_time(tmp_path: Pat
     with pytest.raises(KeyboardInterrupt):
         run(
             *(dataset, FEW, tmp_path / "r"),
-            timed_pairs=2,
+            timing_pairs=2,
             engine=engine,
-            observer=StopsBeforeTiming(),
+            progress=stop_before_timing,
         )
     status = Results(tmp_path / "r").status()
     assert (status.done, status.left, status.untimed) == (12, 0, 6)
-    status = run(dataset, FEW, tmp_path / "r", timed_pairs=2, engine=engine).status()
+    status = run(dataset, FEW, tmp_path / "r", timing_pairs=2, engine=engine).status()
     assert (status.done, status.left, status.untimed) == (12, 0, 0)
 
 
 def test_rows_of_other_settings_in_the_folder_are_told(tmp_path: Path) -> None:
-    dataset, engine, told = write_dataset(tmp_path / "images", strip(5)), InlineEngine(), Told()
+    dataset, engine = write_dataset(tmp_path / "images", strip(5)), InlineEngine()
+    told: list[str] = []
+
+    def hear(event: Event) -> None:
+        if "ignored" in event.message:
+            told.append(event.message)
+
     for combinations, limit in (
-        (FEW, ALL_KEYPOINTS),
-        ("BRISK-BRISK-HAM-BF", ALL_KEYPOINTS),  # adds to what is there
-        ("BRISK-BRISK-HAM-BF", KeypointLimit(50)),
+        (FEW, 0),
+        ("BRISK-BRISK-HAM-BF", 0),  # adds to what is there
+        ("BRISK-BRISK-HAM-BF", 50),
     ):
         run(
             *(dataset, combinations, tmp_path / "r"),
             timing="shared",
-            limit=limit,
+            max_keypoints=limit,
             engine=engine,
-            observer=told,
+            progress=hear,
         )
-    assert told.aside == [16]
+    (line,) = told
+    assert line.startswith("16 rows ")
 
 
 def row(number: int, timing: str, seconds: float, **known: Any) -> dict[str, Any]:

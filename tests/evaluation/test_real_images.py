@@ -14,7 +14,7 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.datasets.decoding import FileSource
 from aerocues.evaluation.correspondence import transfer
-from aerocues.evaluation.run import Limits, run
+from aerocues.evaluation.run import run
 from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
@@ -34,7 +34,7 @@ DROPPING = ("ORB-FREAK-HAM-BF", "MSD-ORB-HAM-BF", "GFTT-BRIEF-HAM-BF")
 
 @pytest.fixture(scope="module")
 def graf(shared_data: Path) -> Dataset:
-    return open_dataset(f"oxford:{shared_data / 'oxford'}", sequences=["graf"], limit=2)
+    return open_dataset(f"oxford:{shared_data / 'oxford'}", sequences=["graf"], max_pairs=2)
 
 
 @pytest.mark.slow
@@ -95,7 +95,7 @@ def test_a_stale_list_of_keypoints_would_destroy_the_matches(
     shared_data: Path, tmp_path: Path, text: str, position: int
 ) -> None:
     where = f"oxford:{shared_data / 'oxford'}"
-    graf = open_dataset(where, sequences=["graf"], limit=2, max_width=640)
+    graf = open_dataset(where, sequences=["graf"], max_pairs=2, max_width=640)
     pair = graf.pairs[position]
     assert pair.homography is not None
     one = Dataset(graf.name, graf.images, [pair], graf.geometry)
@@ -125,8 +125,8 @@ def test_a_hundred_megapixels_stay_within_the_limit_of_memory(tmp_path: Path) ->
         cv2.imwrite(str(tmp_path / name), whole, [cv2.IMWRITE_PNG_COMPRESSION, 1])
     images = [Image(name, FileSource(tmp_path / name)) for name in ("first.png", "second.png")]
     dataset = Dataset("huge", images, [Pair(0, "first.png", "second.png", "huge")], "epipolar")
-    limits = Limits(workers=1, memory_limit_mb=4000)
-    table = run(dataset, "ORB-BRIEF-HAM-FLANN", tmp_path / "r", limits=limits).table()
+    names = "ORB-BRIEF-HAM-FLANN"
+    table = run(dataset, names, tmp_path / "r", workers=1, memory_limit=4).table()
     [row] = table.to_dicts()
     assert row["status"] not in ("out_of_memory", "crashed", "error", "timeout"), row["message"]
     assert row["keypoints_1"] > 20_000

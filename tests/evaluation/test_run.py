@@ -5,19 +5,17 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import SelectionError
-from aerocues.evaluation.engine import Finished
-from aerocues.evaluation.plan import Plan
-from aerocues.evaluation.run import Limits, Observer, plan_run, run
+from aerocues.errors import ArgumentError, SelectionError
+from aerocues.evaluation.run import plan_run, run
 from aerocues.methods.presets import Preset
-from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.progress import Event
 from aerocues.results.schema import COLUMNS
-from aerocues.results.timing import Timing
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import (
     assert_same_rows,
@@ -33,18 +31,14 @@ from tests.methods.pictures import textured
 FEW = "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-FLANN,AKAZE-SIFT-L2-BF"
 
 
-class Counting(Observer):
+class Counting:
     """Counts the rows that were really measured."""
 
     def __init__(self) -> None:
         self.rows = 0
-        self.plan: Plan | None = None
 
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        self.plan = plan
-
-    def finished(self, finished: Finished) -> None:
-        self.rows += len(finished.rows)
+    def __call__(self, event: Event) -> None:
+        self.rows += len(event.rows)
 
 
 def test_views_of_a_plane_are_measured_with_the_truth(tmp_path: Path) -> None:
@@ -74,8 +68,8 @@ def test_views_of_a_plane_are_measured_with_the_truth(tmp_path: Path) -> None:
 
 def test_the_second_run_measures_nothing(views: Dataset, tmp_path: Path) -> None:
     first, second = Counting(), Counting()
-    before = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=first).table())
-    after = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=second).table())
+    before = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), progress=first).table())
+    after = rows_of(run(views, FEW, tmp_path / "r", engine=InlineEngine(), progress=second).table())
     assert (first.rows, second.rows) == (9, 0)
     assert before == after
 
@@ -85,7 +79,7 @@ def test_more_combinations_measure_only_the_new(views: Dataset, tmp_path: Path) 
     ((_, plan),) = plan_run(views, FEW, tmp_path / "r")
     assert (plan.rows_planned, plan.rows_present, plan.rows_left) == (9, 3, 6)
     counting = Counting()
-    results = run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
+    results = run(views, FEW, tmp_path / "r", engine=InlineEngine(), progress=counting)
     assert counting.rows == 6
     assert len(results.table()) == 9
 
@@ -98,7 +92,7 @@ def test_a_changed_image_is_measured_again(tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", pictures)
     counting = Counting()
     results = run(
-        dataset, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), observer=counting
+        dataset, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), progress=counting
     )
     after = rows_of(results.table())
     assert counting.rows == 1
@@ -110,7 +104,7 @@ def test_another_seed_gives_a_table_of_its_own(views: Dataset, tmp_path: Path) -
     other = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", seed=1, engine=InlineEngine())
     assert other.table()["seed"].to_list() == [1, 1, 1]
     again = Counting()
-    back = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), observer=again)
+    back = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine(), progress=again)
     assert again.rows == 0
     assert back.table()["seed"].to_list() == [0, 0, 0]
 
@@ -199,14 +193,17 @@ def test_exclusive_times_say_so_and_know_the_memory(views: Dataset, tmp_path: Pa
         assert exclusive["peak_memory_mb"].null_count() == 0
         assert max(exclusive["peak_memory_mb"].to_list()) > 0
     counting = Counting()
-    run(views, FEW, tmp_path / "r", engine=InlineEngine(), observer=counting)
+    run(views, FEW, tmp_path / "r", engine=InlineEngine(), progress=counting)
     assert counting.rows == 0
 
 
-@pytest.mark.parametrize("limits", [Limits(workers=-1), Limits(timeout=0), Limits(timeout=-3)])
-def test_limits_must_be_positive(views: Dataset, tmp_path: Path, limits: Limits) -> None:
-    with pytest.raises(SelectionError):
-        run(views, FEW, tmp_path / "r", limits=limits)
+@pytest.mark.parametrize(
+    "limits",
+    [{"workers": -1}, {"workers": 0}, {"timeout": 0}, {"timeout": "soon"}, {"memory_limit": 0}],
+)
+def test_limits_must_be_positive(views: Dataset, tmp_path: Path, limits: dict[str, Any]) -> None:
+    with pytest.raises(ArgumentError, match=next(iter(limits))):
+        run(views, FEW, tmp_path / "r", **limits)
     assert not (tmp_path / "r").exists()
 
 
@@ -239,7 +236,8 @@ def test_plug_ins_run_end_to_end(
         "CORNERS-PATCHES-L2-MUTUAL,CORNERS-ORB-HAM-BF,CORNER_BITS-CORNER_BITS-HAM-*,"
         "SIFT-PATCHES-L2-FLANN,CORNER_BITS-SIFT-L2-MUTUAL",
         tmp_path / "r",
-        limits=Limits(workers=1, timeout=60),
+        workers=1,
+        timeout=60,
     )
     table = results.table()
     assert len(table) == 6 * 3
@@ -258,15 +256,15 @@ def test_a_limit_and_a_preset_are_part_of_a_measurement(tmp_path: Path) -> None:
     results = tmp_path / "results"
     engine = InlineEngine()
     free = rows_of(run(dataset, names, results, engine=engine).table())
-    limit = KeypointLimit(200, spread=True)
-    table = run(dataset, names, results, limit=limit, engine=engine).table()
+    limit: dict[str, Any] = {"max_keypoints": 200, "spread": True}
+    table = run(dataset, names, results, engine=engine, **limit).table()
     for row in table.to_dicts():
         assert row["keypoints_1"] <= 200
         assert (row["max_keypoints"], row["keypoint_choice"]) == (200, "spread")
         assert row["inlier_threshold"] == 3.0
     assert not set(table["row_key"]) & {str(row["row_key"]) for row in free.values()}
-    for kept in (limit, ALL_KEYPOINTS):
-        ((_, plan),) = plan_run(dataset, names, results, limit=kept)
+    for kept in (limit, {}):
+        ((_, plan),) = plan_run(dataset, names, results, **kept)
         assert not plan.units
 
     strict = Preset("strict", "strict", True, thresholds={"ORB-ORB": 0.5})

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.making import make_descriptor, make_detector
-from aerocues.methods.opencv import from_opencv, to_opencv
 from aerocues.methods.parameters import create_opencv
 from aerocues.methods.registry import Methods
 from tests.methods.pictures import strongest, textured
@@ -46,19 +45,19 @@ def assert_same(first: Keypoints, second: Keypoints) -> None:
 
 @given(keypoints())
 def test_keypoints_survive_the_way_through_opencv_exactly(points: Keypoints) -> None:
-    assert_same(from_opencv(to_opencv(points)), points)
+    assert_same(Keypoints.from_opencv(points.to_opencv()), points)
 
 
 @pytest.mark.opencv_versions
 def test_the_packed_octave_of_sift_survives(methods: Methods) -> None:
     row = methods.detectors["SIFT"]
     native = create_opencv(row.factory, row.parameters).detect(textured())
-    found = from_opencv(native)
+    found = Keypoints.from_opencv(native)
     assert found.octave.tolist() == [point.octave for point in native]
     # Octave in the lowest byte (255 is -1), layer in the next, sub-layer in the third.
     assert (found.octave & 255 == 255).any()
     assert found.octave.max() > 2**16
-    returned = to_opencv(found)
+    returned = found.to_opencv()
     for before, after in zip(native, returned, strict=True):
         assert (before.pt, before.size, before.angle, before.response) == (
             after.pt,
@@ -75,7 +74,7 @@ def test_describing_arrays_equals_describing_the_keypoints_of_opencv(methods: Me
     native = create_opencv(row.factory, row.parameters)
     _, direct = native.detectAndCompute(image, None)
     stage = make_descriptor(methods, "SIFT")
-    found = from_opencv(native.detect(image))
+    found = Keypoints.from_opencv(native.detect(image))
     features = stage.read(stage.call(image, stage.prepare(found)))
     np.testing.assert_array_equal(features.descriptors, direct)
 
@@ -115,7 +114,7 @@ def test_rows_that_are_not_finite_are_dropped_with_their_keypoints(methods: Meth
     assert 0 < finite.sum() < len(rows)
     features = stage.read(raw)
     np.testing.assert_array_equal(features.descriptors, rows[finite])
-    assert_same(features.keypoints, from_opencv(native).take(finite))
+    assert_same(features.keypoints, Keypoints.from_opencv(native).take(finite))
 
 
 @pytest.mark.opencv_versions

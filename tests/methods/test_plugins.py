@@ -150,11 +150,17 @@ def test_parameters_decide_what_a_plug_in_finds(arena: Methods) -> None:
     [
         (
             {"detectors": {"orb": "arena.methods:Corners"}},
-            "a detector ORB, which is left out: opencv has one of that name",
+            "'orb', which is left out: opencv has a detector of that name",
         ),
-        ({"matchers": {"BF": "arena.methods:Mutual"}}, "a matcher BF, which is left out"),
-        ({"extractors": {"sift": "arena.methods:CornerBits"}}, "a detector SIFT, which is left"),
-        ({"extractors": {"VGG": "arena.methods:CornerBits"}}, "a descriptor VGG, which is left"),
+        ({"matchers": {"BF": "arena.methods:Mutual"}}, "'BF', which is left out"),
+        (
+            {"extractors": {"sift": "arena.methods:CornerBits"}},
+            "'sift', which is left out",
+        ),
+        (
+            {"extractors": {"VGG": "arena.methods:CornerBits"}},
+            "opencv has a descriptor",
+        ),
         ({"detectors": {"my-corners": "arena.methods:Corners"}}, "'my-corners', which is left out"),
         ({"descriptors": {"a b": "arena.methods:Patches"}}, "'a b', which is left out: a name may"),
     ],
@@ -180,8 +186,8 @@ def test_of_two_plug_ins_of_one_name_the_first_is_kept(install: Install) -> None
     methods = install("two", {"extractors": {"corners": "arena.methods:CornerBits"}}, CODE)
     assert methods.detectors["CORNERS"].origin == "one 1.2"
     assert "CORNERS" not in methods.descriptors
-    assert "the plug-in two 1.2 offers a detector CORNERS" in methods.problems[0]
-    assert "one 1.2 has one of that name" in methods.problems[0]
+    assert "the plug-in two 1.2 offers 'corners'" in methods.problems[0]
+    assert "one 1.2 has a detector of that name" in methods.problems[0]
 
 
 BAD = """

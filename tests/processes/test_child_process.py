@@ -20,5 +20,5 @@ def test_products_of_matrices_stay_on_one_core(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_of_a_child_that_cannot_start_the_last_line_is_told() -> None:
-    with pytest.raises(EngineError, match=r"\w+Error\b[^/]*--memory-limit"):
+    with pytest.raises(EngineError, match=r"\w+Error\b[^/]*`memory_limit`"):
         ChildProcess("tests.evaluation.threads_child", None, memory_limit_mb=1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,11 +9,9 @@ import pytest
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.reconstruction.models import Models
-from aerocues.reconstruction.options import ReconstructionOptions
-from aerocues.reconstruction.protocol import ReconstructionProtocol
-from tests.reconstruction.scenes import write_scene
+from tests.reconstruction.scenes import Options, write_scene
 
-OPTIONS = ReconstructionOptions(protocol=ReconstructionProtocol(max_keypoints=1000))
+OPTIONS: Options = {"max_keypoints": 1000}
 COMBINATIONS = "SIFT-SIFT-L2-FLANN,ORB-ORB-HAM-BF"
 
 
@@ -27,14 +24,12 @@ def landscape(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 @pytest.fixture(scope="session")
 def models(landscape: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Models:
     """Models of the landscape; tests change nothing in them."""
-    options = replace(OPTIONS, workers=1)
-    return aerocues.reconstruct(
-        landscape, tmp_path_factory.mktemp("models") / "models", COMBINATIONS, options=options
-    )
+    output = tmp_path_factory.mktemp("models") / "models"
+    return aerocues.reconstruct(landscape, COMBINATIONS, output, workers=1, **OPTIONS)
 
 
 @pytest.fixture
-def quick() -> ReconstructionOptions:
+def quick() -> Options:
     """Options under which a small scene takes seconds."""
     return OPTIONS
 

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.methods.arrays import Features, Keypoints
-from aerocues.methods.opencv import from_opencv, to_opencv
 
 Image = NDArray[np.uint8]
 
@@ -24,8 +23,8 @@ class NanDescriptor:
 
     def describe(self, image: Image, keypoints: Keypoints) -> Features:
         found: Any = cv2.ORB_create()
-        native, descriptors = found.compute(image, to_opencv(keypoints))
-        described = from_opencv(native)
+        native, descriptors = found.compute(image, keypoints.to_opencv())
+        described = Keypoints.from_opencv(native)
         xy = np.full_like(described.xy, np.nan)
         return Features(replace(described, xy=xy), descriptors)
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -16,6 +17,8 @@ from aerocues.datasets.dataset import Dataset, Image, Pair, PinholeCamera, TrueV
 from aerocues.datasets.decoding import FileSource
 
 Array = NDArray[np.float64]
+Options = dict[str, Any]
+"""What `aerocues.reconstruct` is given."""
 CAMERA = PinholeCamera(480, 360, 420.0, 420.0, 239.5, 179.5)
 MATRIX = np.array([[420.0, 0, 239.5], [0, 420.0, 179.5], [0, 0, 1]])
 ALTITUDE = 40.0

@@ -15,28 +15,26 @@ from plyfile import PlyData
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError, StoreError
+from aerocues.progress import Event
 from aerocues.reconstruction.models import Models
-from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
-from aerocues.reconstruction.scene import Wanted
 from aerocues.results.metrics import Row
-from tests.reconstruction.scenes import scene_of
+from tests.reconstruction.scenes import Options, scene_of
 
 SIFT = "SIFT-SIFT-L2-FLANN"
 MODEL = ["cameras.bin", "frames.bin", "images.bin", "points3D.bin", "rigs.bin"]
 
 
-class Counting(ReconstructionObserver):
+class Counting:
     """Remembers what was done."""
 
     def __init__(self) -> None:
         self.rows: list[Row] = []
         self.present = 0
 
-    def planned(self, total: int, present: int) -> None:
-        self.present = present
-
-    def finished(self, row: Row) -> None:
-        self.rows.append(row)
+    def __call__(self, event: Event) -> None:
+        if event.stage == "reconstructing":
+            self.rows += [dict(row) for row in event.rows]
+            self.present = event.done - len(self.rows)
 
 
 def row_of(models: Models, combination: str) -> Row:
@@ -108,10 +106,10 @@ def test_colmap_itself_reads_the_model(models: Models) -> None:
 
 @pytest.mark.slow
 def test_the_same_again_gives_the_same_model_and_redoes_nothing(
-    models: Models, landscape: Dataset, quick: ReconstructionOptions, empty: Path
+    models: Models, landscape: Dataset, quick: Options, empty: Path
 ) -> None:
     first = Counting()
-    again = aerocues.reconstruct(landscape, empty, SIFT, options=quick, observer=first)
+    again = aerocues.reconstruct(landscape, SIFT, empty, progress=first, **quick)
     assert (first.present, len(first.rows)) == (0, 1)
     for name in MODEL:
         mine = (again.path(SIFT) / "sparse" / "0" / name).read_bytes()
@@ -119,19 +117,18 @@ def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     assert again.cloud(SIFT).content() == models.cloud(SIFT).content()  # type: ignore[union-attr]
 
     second = Counting()
-    aerocues.reconstruct(landscape, empty, SIFT, options=quick, observer=second)
+    aerocues.reconstruct(landscape, SIFT, empty, progress=second, **quick)
     assert (second.present, second.rows) == (1, [])
 
     # Another one in the same folder: both are in its table, with the same reference.
-    both = aerocues.reconstruct(landscape, empty, "AKAZE-AKAZE-HAM-FLANN", options=quick)
+    both = aerocues.reconstruct(landscape, "AKAZE-AKAZE-HAM-FLANN", empty, **quick)
     assert both.table()["detector"].to_list() == ["AKAZE", "SIFT"]
     assert both.table()["reference"].to_list() == [SIFT, SIFT]
 
     # Other settings of the mapper: a new model out of the same matches.
-    protocol = replace(quick.protocol, mapper="global")
     third = Counting()
     changed = aerocues.reconstruct(
-        landscape, empty, SIFT, options=replace(quick, protocol=protocol), observer=third
+        landscape, SIFT, empty, progress=third, **{**quick, "mapper": "global"}
     )
     [row] = third.rows
     assert row["matching_seconds"] == first.rows[0]["matching_seconds"]
@@ -141,7 +138,7 @@ def test_the_same_again_gives_the_same_model_and_redoes_nothing(
 
 @pytest.mark.slow
 def test_a_damaged_database_or_file_of_matches_does_no_harm(
-    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+    models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(models.folder, copy)
@@ -150,7 +147,7 @@ def test_a_damaged_database_or_file_of_matches_does_no_harm(
     (place / "database.db").write_bytes(b"this is no database" * 1000)
     (place / "matches.npz").write_bytes(b"PK\x03\x04 nor is this")
     seen = Counting()
-    again = aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    again = aerocues.reconstruct(landscape, SIFT, copy, progress=seen, **quick)
     assert [row["status"] for row in seen.rows] == ["ok"]
     mine = (again.path(SIFT) / "sparse" / "0" / "points3D.bin").read_bytes()
     assert mine == (models.path(SIFT) / "sparse" / "0" / "points3D.bin").read_bytes()
@@ -158,12 +155,11 @@ def test_a_damaged_database_or_file_of_matches_does_no_harm(
 
 @pytest.mark.slow
 def test_refined_intrinsics_and_undistorted_images(
-    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+    landscape: Dataset, quick: Options, empty: Path
 ) -> None:
     images = [replace(image, truth=None) for image in landscape.images]
-    protocol = replace(quick.protocol, intrinsics="refine")
-    options = replace(quick, protocol=protocol, wanted=Wanted(colours=False, undistorted=True))
-    made = aerocues.reconstruct(scene_of(images), empty, SIFT, options=options)
+    options = {**quick, "intrinsics": "refine", "colours": False, "undistort": True}
+    made = aerocues.reconstruct(scene_of(images), SIFT, empty, **options)
     row = row_of(made, SIFT)
     assert row["status"] == "ok"
     assert row["intrinsics"] == "refine (guessed)"
@@ -175,74 +171,72 @@ def test_refined_intrinsics_and_undistorted_images(
 
 
 def test_a_focal_length_that_is_not_known_must_be_given_to_stay_fixed(
-    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+    landscape: Dataset, quick: Options, empty: Path
 ) -> None:
     images = [replace(image, truth=None) for image in landscape.images]
-    with pytest.raises(ReconstructionError, match=r"9 of 9 .* --focal-length"):
-        aerocues.reconstruct(scene_of(images), empty, SIFT, options=quick)
+    with pytest.raises(ReconstructionError, match=r"9 of 9 .* `focal_length`"):
+        aerocues.reconstruct(scene_of(images), SIFT, empty, **quick)
 
 
 def test_scenes_that_have_no_depth_are_refused(empty: Path) -> None:
     with pytest.raises(ReconstructionError, match="homograph"):
-        aerocues.reconstruct("synthetic", empty, SIFT)
+        aerocues.reconstruct("synthetic", SIFT, empty)
 
 
 def test_several_scenes_must_be_told_apart(landscape: Dataset, empty: Path) -> None:
     pairs = [replace(pair, sequence=f"part {pair.index % 2}") for pair in landscape.pairs]
-    with pytest.raises(ReconstructionError, match=r"2 scenes .* --sequences"):
-        aerocues.reconstruct(replace(landscape, pairs=pairs), empty, SIFT)
+    with pytest.raises(ReconstructionError, match=r"2 scenes .* `sequences`"):
+        aerocues.reconstruct(replace(landscape, pairs=pairs), SIFT, empty)
 
 
 def test_a_reference_must_be_among_the_combinations(landscape: Dataset, empty: Path) -> None:
-    options = ReconstructionOptions(reference="ORB-ORB-HAM-BF")
     with pytest.raises(ReconstructionError, match="ORB-ORB-HAM-BF"):
-        aerocues.reconstruct(landscape, empty, SIFT, options=options)
+        aerocues.reconstruct(landscape, SIFT, empty, reference="ORB-ORB-HAM-BF")
     with pytest.raises(ReconstructionError, match="combinations"):
-        aerocues.reconstruct(landscape, empty)
+        aerocues.reconstruct(landscape, output=empty)
 
 
 def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> None:
     empty.mkdir()
     (empty / "letter.txt").write_text("dear")
     with pytest.raises(StoreError, match=r"letter\.txt"):
-        aerocues.reconstruct(landscape, empty, SIFT)
+        aerocues.reconstruct(landscape, SIFT, empty)
     with pytest.raises(StoreError, match=str(empty)):
         Models(empty)
 
 
 @pytest.mark.slow
 def test_a_failure_leaves_nothing_of_an_earlier_model(
-    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+    models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(models.folder, copy)
-    protocol = replace(quick.protocol, max_keypoints=999)
-    options = replace(quick, protocol=protocol, time_limit=0.3)
-    failed = aerocues.reconstruct(landscape, copy, SIFT, options=options)
+    options = {**quick, "max_keypoints": 999, "timeout": 0.3}
+    failed = aerocues.reconstruct(landscape, SIFT, copy, **options)
     row = row_of(failed, SIFT)
     assert row["status"] == "timeout"
     assert (row["reference"], row["cloud_distance_rms"]) == (None, None)
     seen = Counting()
-    aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    aerocues.reconstruct(landscape, SIFT, copy, progress=seen, **quick)
     assert seen.present == 0
     assert seen.rows[0]["points_3d"] == row_of(models, SIFT)["points_3d"]
 
 
 def test_files_that_are_gone_are_made_again(
-    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+    models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(models.folder, copy)
     (copy / SIFT / "cloud.npz").write_bytes(b"half")
     seen = Counting()
-    again = aerocues.reconstruct(landscape, copy, SIFT, options=quick, observer=seen)
+    again = aerocues.reconstruct(landscape, SIFT, copy, progress=seen, **quick)
     assert len(seen.rows) == 1
     assert again.cloud(SIFT) is not None
 
 
 @pytest.mark.slow
 def test_other_truth_or_other_names_are_another_scene(
-    models: Models, landscape: Dataset, quick: ReconstructionOptions, tmp_path: Path
+    models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
     moved = []
     for number, image in enumerate(landscape.images):
@@ -251,7 +245,7 @@ def test_other_truth_or_other_names_are_another_scene(
         moved.append(replace(image, truth=replace(image.truth, centre=centre)))
     copy = tmp_path / "moved"
     shutil.copytree(models.folder, copy)
-    made = aerocues.reconstruct(replace(landscape, images=moved), copy, SIFT, options=quick)
+    made = aerocues.reconstruct(replace(landscape, images=moved), SIFT, copy, **quick)
     row = row_of(made, SIFT)
     assert row["status"] == "misplaced"
     assert row["matching_seconds"] == row_of(models, SIFT)["matching_seconds"]
@@ -265,18 +259,18 @@ def test_other_truth_or_other_names_are_another_scene(
             for pair in landscape.pairs
         ],
     )
-    again = aerocues.reconstruct(renamed, copy, SIFT, options=quick)
+    again = aerocues.reconstruct(renamed, SIFT, copy, **quick)
     assert row_of(again, SIFT)["status"] == "ok"
 
 
 @pytest.mark.slow
 def test_a_pair_in_both_orders_is_matched_once(
-    landscape: Dataset, quick: ReconstructionOptions, empty: Path
+    landscape: Dataset, quick: Options, empty: Path
 ) -> None:
     turned = [
         replace(pair, index=100 + pair.index, image_1=pair.image_2, image_2=pair.image_1)
         for pair in landscape.pairs
     ]
     twice = replace(landscape, pairs=[*landscape.pairs, *turned])
-    row = row_of(aerocues.reconstruct(twice, empty, SIFT, options=quick), SIFT)
+    row = row_of(aerocues.reconstruct(twice, SIFT, empty, **quick), SIFT)
     assert (row["status"], row["pairs"]) == ("ok", 36)

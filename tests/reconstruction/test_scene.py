@@ -87,7 +87,7 @@ def test_images_of_one_size_and_focal_length_share_a_camera(tmp_path: Path) -> N
 def test_a_focal_length_that_is_not_known_may_be_refined_only(tmp_path: Path) -> None:
     dataset = write_scene(tmp_path, [(0, 0), (9, 0)], truth=False)
     prepared = [Prepared(image.name, 480, 360, None) for image in dataset.images]
-    with pytest.raises(ReconstructionError, match=r"2 of 2 .* --focal-length PIXELS"):
+    with pytest.raises(ReconstructionError, match=r"2 of 2 .* `focal_length` in pixels"):
         cameras_of(dataset, prepared, ReconstructionProtocol())
     [camera] = cameras_of(dataset, prepared, ReconstructionProtocol(intrinsics="refine"))
     assert (camera.parameters, camera.source) == ((), "guessed")

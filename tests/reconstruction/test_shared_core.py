@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
@@ -10,17 +9,15 @@ import polars as pl
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.methods.presets import Preset
-from aerocues.methods.strongest import KeypointLimit
 from aerocues.reconstruction.models import Models
-from aerocues.reconstruction.options import ReconstructionOptions
+from tests.reconstruction.scenes import Options
 
 
 def test_the_thresholds_of_a_preset_decide_the_model(
-    landscape: Dataset, models: Models, empty: Path, quick: ReconstructionOptions
+    landscape: Dataset, models: Models, empty: Path, quick: Options
 ) -> None:
     strict = Preset("strict", "half a pixel", chance_test=True, thresholds={"ORB-ORB": 0.5})
-    options = replace(quick, preset=strict)
-    made = aerocues.reconstruct(landscape, empty, "ORB-ORB-HAM-BF", options=options).table()
+    made = aerocues.reconstruct(landscape, "ORB-ORB-HAM-BF", empty, preset=strict, **quick).table()
     usual = models.table().filter(pl.col("detector") == "ORB")
     assert made["matches"].to_list() == usual["matches"].to_list()
     assert made["verified_matches"][0] < usual["verified_matches"][0]
@@ -29,21 +26,21 @@ def test_the_thresholds_of_a_preset_decide_the_model(
 
 
 def test_features_that_a_run_kept_are_used_again(
-    landscape: Dataset, models: Models, empty: Path, tmp_path: Path, quick: ReconstructionOptions
+    landscape: Dataset, models: Models, empty: Path, tmp_path: Path, quick: Options
 ) -> None:
     kept = tmp_path / "features"
     results = aerocues.run(
         landscape,
         "ORB-ORB-HAM-BF",
         tmp_path / "results",
-        limit=KeypointLimit(quick.protocol.max_keypoints),
+        max_keypoints=quick["max_keypoints"],
         timing="shared",
         features=kept,
     )
     before = {file: file.stat().st_mtime_ns for file in kept.rglob("*.npz")}
     assert len(before) == 2 * len(landscape.images)
     made = aerocues.reconstruct(
-        landscape, empty, "ORB-ORB-HAM-BF", results=results.folder, options=quick
+        landscape, "ORB-ORB-HAM-BF", empty, results=results.folder, **quick
     ).table()
     assert {file: file.stat().st_mtime_ns for file in kept.rglob("*.npz")} == before
     usual = models.table().filter(pl.col("detector") == "ORB")

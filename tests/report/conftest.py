@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import aerocues
-from aerocues import Limits, Results
+from aerocues import Results
 from aerocues.report.page import page_of
 from tests.cli.conftest import write_views
 from tests.report.made_up import failed, folder_of, measured
@@ -139,4 +139,4 @@ def photos(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def finished(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> Results:
     """A finished run of 4 combinations on the 3 pairs of `photos`."""
     output = tmp_path_factory.mktemp("run") / "results"
-    return aerocues.run(str(photos), RUN_COMBINATIONS, output, limits=Limits(workers=1))
+    return aerocues.run(str(photos), RUN_COMBINATIONS, output, workers=1)

@@ -131,7 +131,7 @@ def test_the_first_of_every_entry_come_before_the_second_of_any() -> None:
         ("b", 0),
         ("a", 1),
     ]
-    assert kept.notes == ["3 of 6 clouds are left out to keep the page small (--max-megabytes)"]
+    assert kept.notes == ["3 of 6 clouds are left out to keep the page small"]
     assert fitting_clouds(found, 6 * size).notes == []
 
 

@@ -159,10 +159,8 @@ def test_nothing_to_report_on() -> None:
 
 def test_a_folder_that_was_filled_in_two_runs(photos: Path, tmp_path: Path) -> None:
     for limit in (2, 1):
-        dataset = aerocues.open_dataset(str(photos), limit=limit)
-        results = aerocues.run(
-            dataset, "ORB-ORB-HAM-BF", tmp_path / "results", limits=aerocues.Limits(workers=1)
-        )
+        dataset = aerocues.open_dataset(str(photos), max_pairs=limit)
+        results = aerocues.run(dataset, "ORB-ORB-HAM-BF", tmp_path / "results", workers=1)
     [entry] = payload_of(report_entries([results], resamples=50), "title")["entries"]
     assert (entry["run"]["dataset"]["pairs"], entry["run"]["dataset"]["images"]) == (2, 3)
     assert len(entry["pairs"]) == 2

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 import aerocues
-from aerocues import Limits, Results
+from aerocues import Results
 from aerocues.report import pictures
 from aerocues.report.choice import chosen_combinations, chosen_pictures
 from aerocues.report.drawing_process import DrawingProcess
@@ -96,10 +96,10 @@ def own(photos: Path, tmp_path: Path) -> Results:
     """A run on images that a test may spoil."""
     shutil.copytree(photos, tmp_path / "photos")
     return aerocues.run(
-        aerocues.open_dataset(str(tmp_path / "photos"), limit=1),
+        aerocues.open_dataset(str(tmp_path / "photos"), max_pairs=1),
         "ORB-ORB-HAM-BF",
         tmp_path / "results",
-        limits=Limits(workers=1),
+        workers=1,
     )
 
 
@@ -184,7 +184,7 @@ def test_pictures_give_way_to_size() -> None:
     few = fitting(both, 6500)
     assert [picture["why"] for picture in few.pictures] == ["0", "0"]
     assert few.images.keys() == {"1000-0-1", "1000-0-2", "1001-0-1", "1001-0-2"}
-    assert few.notes == ["4 of 6 pictures are left out to keep the page small (--max-megabytes)"]
+    assert few.notes == ["4 of 6 pictures are left out to keep the page small"]
     assert fitting(both, 0).pictures == []
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from aerocues.errors import ScoreError
+from aerocues.errors import ArgumentError
 from aerocues.scoring import DecisionTable, ScoreSettings, score
 from aerocues.scoring.bootstrap import bootstrap
 from aerocues.scoring.resampling import draws, independent_units, unit_of_resampling
@@ -171,7 +171,7 @@ def test_an_alternative_seldom_valid_is_judged_by_the_resamples_that_hold_it() -
 
 @pytest.mark.parametrize(("resamples", "seed"), [(1, 0), (0, 0), (10, -1)])
 def test_arguments_out_of_range(resamples: int, seed: int) -> None:
-    with pytest.raises(ScoreError):
+    with pytest.raises(ArgumentError):
         bootstrap(score(random_table(0)), resamples, seed)
 
 

@@ -8,8 +8,9 @@ import pytest
 
 from aerocues.errors import ScoreError
 from aerocues.scoring import SCORE_PRESETS, criteria_named
+from aerocues.scoring.assessment import score
 from aerocues.scoring.combinations import decision_table, suitable_preset
-from aerocues.scoring.measured import score, settings_from, table_of
+from aerocues.scoring.measured import settings_from, table_of
 from tests.scoring.measurements import Stored, models, row, rows
 
 ORB, SIFT, AKAZE = "ORB-ORB-HAM-BF", "SIFT-SIFT-L2-FLANN", "AKAZE-SIFT-L2-BF"
@@ -79,7 +80,7 @@ def test_no_inlier_beyond_chance_leaves_the_time_for_them_undefined() -> None:
     [
         (rows(row(ORB, 0)).clear(), ["inliers"], "rows"),
         (rows(row(ORB, 0), row(ORB, 0, dataset="other")), ["inliers"], "flight"),
-        (rows(row(ORB, 0)), ["points_3d"], "points_3d"),
+        (rows(row(ORB, 0)), ["points_3d"], "image pairs"),
         (rows(row(ORB, 0)), ["inliers", "points_3d"], "points_3d"),
         (rows(row(ORB, 0)), ["gt_repeatability"], "'gt_repeatability'"),
     ],
@@ -158,8 +159,8 @@ def test_failing_on_the_hard_pair_pays_by_the_thesis_and_costs_by_default() -> N
     results = Stored(rows(*steady, *fragile))
     by_thesis = score(results, "thesis", resamples=10).frame()
     by_default = score(results, resamples=10).frame()
-    assert by_thesis["alternative"].to_list() == [SIFT, ORB]
-    assert by_default["alternative"].to_list() == [ORB, SIFT]
+    assert by_thesis["combination"].to_list() == [SIFT, ORB]
+    assert by_default["combination"].to_list() == [ORB, SIFT]
     assert by_default["success_rate"].to_list() == [1.0, 0.5]
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import ttest_rel, wilcoxon
 
-from aerocues.errors import ScoreError
+from aerocues.errors import ArgumentError
 from aerocues.scoring import DecisionTable, Scores, ScoreSettings, score
 from aerocues.scoring.bootstrap import bootstrap
 from aerocues.scoring.per_repeat import scores_of_repeats, scores_of_units
@@ -178,5 +178,5 @@ def test_of_one_unit_nothing_can_be_told() -> None:
 
 def test_an_unknown_test() -> None:
     scores = score(random_table(0))
-    with pytest.raises(ScoreError, match="bootstrap, wilcoxon"):
+    with pytest.raises(ArgumentError, match="bootstrap, wilcoxon"):
         compare_with_best(scores, bootstrap(scores, 5), "sign")

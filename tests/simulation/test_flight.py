@@ -16,7 +16,7 @@ from aerocues.datasets.dataset import TrueView
 from aerocues.datasets.gps import east_north_up, read_gps
 from aerocues.errors import DatasetError, SimulationError
 from aerocues.simulation.camera import Pose, pinhole
-from aerocues.simulation.flight import Flown, Settings, simulate
+from aerocues.simulation.flight import Flown, Settings, fly
 from aerocues.simulation.georeference import ORIGIN, geodetic
 from aerocues.simulation.metadata import gimbal_angles, write_image
 from aerocues.simulation.surveys import Shot, Survey
@@ -34,7 +34,7 @@ SETTINGS = Settings(width=120, height=80)
 @pytest.fixture(scope="module")
 def flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("flight")
-    assert simulate(folder, SURVEY, SETTINGS) == Flown(2, 0)
+    assert fly(folder, SURVEY, SETTINGS) == Flown(2, 0)
     return folder
 
 
@@ -47,20 +47,20 @@ def view_of(folder: Path, number: int, max_width: int | None = None) -> TrueView
 def test_what_is_there_is_kept(flight: Path) -> None:
     first = flight / "Layer1/000_a.png"
     before = first.read_bytes()
-    assert simulate(flight, SURVEY, SETTINGS) == Flown(0, 2)
+    assert fly(flight, SURVEY, SETTINGS) == Flown(0, 2)
     first.unlink()
-    assert simulate(flight, SURVEY, SETTINGS) == Flown(1, 1)
+    assert fly(flight, SURVEY, SETTINGS) == Flown(1, 1)
     assert first.read_bytes() == before
 
 
 def test_what_no_longer_belongs_there_goes_before_anything_is_said_of_it(tmp_path: Path) -> None:
     from aerocues.simulation.flight_folder import FlightFolder
 
-    simulate(tmp_path, SURVEY, SETTINGS)
+    fly(tmp_path, SURVEY, SETTINGS)
     other = Survey("other", SURVEY.shots[1:])
     FlightFolder(tmp_path).keep({"Layer1/001_b.png": "another key"})
     assert not list(tmp_path.glob("Layer1/*.png"))
-    assert simulate(tmp_path, other, SETTINGS) == Flown(1, 0)
+    assert fly(tmp_path, other, SETTINGS) == Flown(1, 0)
     assert [path.name for path in tmp_path.glob("Layer1/*.png")] == ["001_b.png"]
 
 
@@ -70,7 +70,7 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
     poses = [shot.pose for shot in SURVEY.shots]
     views = ("Layer1/pitch-90", "Layer1/pitch-60", "Layer2/pitch-90")
     shots = [Shot(f"{view}/{i:03d}", pose) for view in views for i, pose in enumerate(poses)]
-    simulate(tmp_path, Survey("views", tuple(shots)), replace(SETTINGS, width=24, height=16))
+    fly(tmp_path, Survey("views", tuple(shots)), replace(SETTINGS, width=24, height=16))
     spec = f"simulated:{tmp_path}"
     dataset = open_dataset(spec)
     assert [(pair.image_1, pair.image_2) for pair in dataset.pairs] == [
@@ -87,11 +87,11 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
     assert (
         len(open_dataset(spec, subset="Layer1, Layer2/*/000.png", pairs="exhaustive").images) == 5
     )
-    with pytest.raises(DatasetError, match=r"--subset Layer3.* Layer1"):
+    with pytest.raises(DatasetError, match=r"`subset=.Layer3.* Layer1"):
         open_dataset(spec, subset="Layer3")
-    with pytest.raises(DatasetError, match="--pairs exhaustive"):
+    with pytest.raises(DatasetError, match=r"`pairs=.exhaustive"):
         open_dataset(spec, subset="*/000.png")
-    with pytest.raises(DatasetError, match="--sequences"):
+    with pytest.raises(DatasetError, match="`sequences`"):
         open_dataset("synthetic", subset="a")
 
 
@@ -99,26 +99,26 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
 def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
     small = replace(SETTINGS, width=24, height=16)
     part, whole = tmp_path / "part", tmp_path / "whole"
-    assert simulate(part, SURVEY, small, subset="layer1/001*") == Flown(1, 0)
+    assert fly(part, SURVEY, small, subset="layer1/001*") == Flown(1, 0)
     assert [path.name for path in part.glob("Layer1/*.png")] == ["001_b.png"]
-    assert simulate(whole, SURVEY, small) == Flown(2, 0)
+    assert fly(whole, SURVEY, small) == Flown(2, 0)
     name = "Layer1/001_b.png"
     assert (part / name).read_bytes() == (whole / name).read_bytes()
-    assert simulate(whole, SURVEY, small, subset=name) == Flown(0, 1)
+    assert fly(whole, SURVEY, small, subset=name) == Flown(0, 1)
     assert len(list(whole.glob("Layer1/*.png"))) == 2
-    assert simulate(part, SURVEY, small) == Flown(1, 1)
-    with pytest.raises(SimulationError, match=r"--subset x.* Layer1"):
-        simulate(part, SURVEY, small, subset="x")
+    assert fly(part, SURVEY, small) == Flown(1, 1)
+    with pytest.raises(SimulationError, match=r"`subset=.x.* Layer1"):
+        fly(part, SURVEY, small, subset="x")
 
 
 def test_folders_of_other_files_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "holiday.jpg").touch()
     with pytest.raises(SimulationError, match=r"holiday\.jpg"):
-        simulate(tmp_path, SURVEY, SETTINGS)
+        fly(tmp_path, SURVEY, SETTINGS)
     with pytest.raises(SimulationError, match=r"holiday\.jpg"):
-        simulate(tmp_path / "holiday.jpg", SURVEY, SETTINGS)
+        fly(tmp_path / "holiday.jpg", SURVEY, SETTINGS)
     with pytest.raises(SimulationError, match="'moon'"):
-        simulate(tmp_path / "new", SURVEY, replace(SETTINGS, scene="moon"))
+        fly(tmp_path / "new", SURVEY, replace(SETTINGS, scene="moon"))
     assert not (tmp_path / "new").exists()
 
 

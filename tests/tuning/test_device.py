@@ -8,7 +8,7 @@ import pytest
 import aerocues
 from aerocues.errors import ScoreError, SelectionError
 from aerocues.scoring.platforms import device_factors
-from aerocues.tuning.device import Device, read_device
+from aerocues.tuning.device import Device, as_device
 from tests.cli.other_machine import SLOWER, slower_copy
 
 
@@ -64,9 +64,9 @@ def test_files_that_hold_no_factors_are_told(tmp_path: Path, content: str, words
     file = tmp_path / "factors.json"
     file.write_text(content)
     with pytest.raises(SelectionError, match=words):
-        read_device(file)
+        as_device(file)
     with pytest.raises(SelectionError, match=r"missing\.json"):
-        read_device(tmp_path / "missing.json")
+        as_device(tmp_path / "missing.json")
     stages = {name: {"*": 2} for name in ("detect", "describe", "match", "verify")}
     file.write_text(json.dumps({"machine": "board", "stages": stages}))
-    assert read_device(file) == Device("board", stages)
+    assert as_device(file) == Device("board", stages)

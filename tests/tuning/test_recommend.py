@@ -171,8 +171,8 @@ def test_the_next_commands_have_the_options_and_suit_the_images(
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--budget", "soon"), "--budget soon"),
-        (("--budget", "0s"), "--budget 0s"),
+        (("--budget", "soon"), "--budget must be a time"),
+        (("--budget", "0s"), "got '0s'"),
         (("--combinations", "ORB-ORB-HAM-BF"), "two"),
         (("--objective", "best"), "--objective"),
         (("--sure", "0.1"), "--sure"),

@@ -118,7 +118,7 @@ def test_what_cannot_be_searched_is_told(text: str, words: str) -> None:
 
 @pytest.mark.parametrize("text", ["ORB-BEBLID-HAM-BF", "all", "detector:all"])
 def test_values_of_ones_own_are_for_one_method(text: str) -> None:
-    with pytest.raises(SelectionError, match=f"--grid .*{text}"):
+    with pytest.raises(SelectionError, match=f"`grid` .*{text}"):
         search_spaces_of(text, METHODS, {"nlevels": (6,)})
 
 

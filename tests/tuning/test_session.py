@@ -12,10 +12,11 @@ import pytest
 from aerocues.datasets.catalog import open_dataset
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
-from aerocues.evaluation.engine import Finished, Watch
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.presets import preset_named
 from aerocues.methods.selection import select
+from aerocues.progress import Watch
 from aerocues.results.metrics import Row
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
@@ -160,7 +161,7 @@ def test_short_time_looks_at_fewer_pairs(
     assert sit(photos, tmp_path / "some", Machine(memory), budget=20.0).known.shape[1] < 6
     assert sit(photos, tmp_path / "all", Machine(memory), budget=60.0).known.shape[1] == 6
     machine = Machine(memory)
-    with pytest.raises(SelectionError, match=r"0 of 6 pairs.* --budget 10s$"):
+    with pytest.raises(SelectionError, match=r"0 of 6 pairs.* `budget=.10s.`$"):
         sit(photos, tmp_path / "none", machine, budget=0.9)
     assert machine.now < 3
     with pytest.raises(SelectionError):

@@ -109,7 +109,7 @@ def test_time_that_is_up_leaves_the_default(call: Call, scenes: Path, tmp_path: 
         (("SURF",), "SURF"),
         (("LATCH", "--objective", "beauty"), "'beauty'"),
         (("LATCH", "--grid", "missing.json"), "missing.json"),
-        (("LATCH", "--budget", "never"), "--budget never"),
+        (("LATCH", "--budget", "never"), "got 'never'"),
         ((" , ",), "method"),
         (("ORB-BRIEF-HAM-BF,ORB-LATCH-HAM-BF",), "ORB-LATCH-HAM-BF"),
     ],

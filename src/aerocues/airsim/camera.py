@@ -93,7 +93,7 @@ class SimulatorCamera:
                 raise
             other = next(flavour for flavour in FLAVOURS if flavour != self.flavour)
             raise SimulationError(
-                f"{refusal}; the simulator is no {self.flavour}: use --flavour {other}"
+                f'{refusal}; the simulator is not {self.flavour}: use `flavour="{other}"`'
             ) from refusal
 
     def release(self) -> None:

@@ -14,9 +14,10 @@ from aerocues.airsim.camera import Photograph, SimulatorCamera
 from aerocues.airsim.connection import Connection
 from aerocues.datasets.dataset import PinholeCamera
 from aerocues.errors import SimulationError
+from aerocues.progress import Progress, StageProgress
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.exports import write_poses
-from aerocues.simulation.flight import SUFFIXES, Flown, Progress, shots_in
+from aerocues.simulation.flight import SUFFIXES, Flown, shots_in
 from aerocues.simulation.flight_folder import FlightFolder, write_depth, write_json
 from aerocues.simulation.georeference import geodetic
 from aerocues.simulation.metadata import write_image
@@ -91,9 +92,9 @@ def collect(
     survey : Survey
     asked : Collection
     progress : callable, optional
-        Called with the number of finished images and of all, first when work begins.
+        Called with each `aerocues.Event`, first with the number of images that are kept.
     subset : str, optional
-        As `simulation.flight.simulate` takes it.
+        As `simulation.flight.fly` takes it.
     sleep : callable
         Waits for so many seconds.
 
@@ -115,18 +116,16 @@ def collect(
             place.truth / "camera.json",
             {"camera": asdict(asked.camera), "collector": "airsim", **facts, **_settings(asked)},
         )
-        if progress is not None:
-            progress(0, len(chosen))
-        taken = 0
-        for done, number in enumerate(chosen, start=1):
+        left = [number for number in chosen if not place.has(names[number])]
+        kept = len(chosen) - len(left)
+        stage = StageProgress(progress, "collecting", "images", kept, len(chosen))
+        stage.tell()
+        for done, number in enumerate(left, start=1):
             name = names[number]
-            if not place.has(name):
-                _write(place, name, poses[number], session.take(poses[number]), asked)
-                place.add(name, keys[name])
-                taken += 1
-            if progress is not None:
-                progress(done, len(chosen))
-    return Flown(taken, len(chosen) - taken)
+            _write(place, name, poses[number], session.take(poses[number]), asked)
+            place.add(name, keys[name])
+            stage.tell(done=kept + done, share=done / len(left))
+    return Flown(len(left), kept)
 
 
 def _write(
@@ -137,7 +136,7 @@ def _write(
             raise SimulationError(
                 f"the simulator's images have {got[1]} x {got[0]} pixels; set "
                 f'"Width": {asked.width}, "Height": {asked.height} for ImageType 0 and 1 in the '
-                f"CaptureSettings of its settings.json, or ask for --size {got[1]}x{got[0]}"
+                f"CaptureSettings of its settings.json, or ask for {got[1]} x {got[0]}"
             )
     for path in (place.image(name), place.depth(name)):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -166,7 +165,7 @@ class _Session:
         except OSError as error:
             raise SimulationError(
                 f"no simulator answers at {asked.address} ({error}); start AirSim or "
-                "Cosys-AirSim in ComputerVision mode, or give --host and --port"
+                "Cosys-AirSim in ComputerVision mode, or give its `host` and `port`"
             ) from error
         self.flavour, self.server_version = self._camera.flavour, self._camera.server_version
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import shlex
 from enum import StrEnum
 from typing import Annotated
 
 import typer
 
-from aerocues.cli.console import count
 from aerocues.cli.options import (
     FieldOfViewOption,
     FlightOption,
@@ -16,7 +14,8 @@ from aerocues.cli.options import (
     SubsetOption,
     SurveyOption,
 )
-from aerocues.cli.simulate import numbers
+from aerocues.cli.simulate import report_flight
+from aerocues.defaults import SIZE
 
 app = typer.Typer(help="Collect images from a running AirSim.", no_args_is_help=True)
 
@@ -50,9 +49,9 @@ def collect(
         typer.Option(
             metavar="WxH", help="Image size in pixels, as in the simulator's settings.json."
         ),
-    ] = "1000x665",
+    ] = SIZE,
     fov: FieldOfViewOption = 90.0,
-    form: ImageFormatOption = "png",
+    image_format: ImageFormatOption = "png",
     timeout: Annotated[
         float, typer.Option(min=0.1, metavar="SECONDS", help="Longest wait for an answer.")
     ] = 60.0,
@@ -60,21 +59,14 @@ def collect(
     """Fly a survey: images, poses and depth. Continues an interrupted flight."""
     from aerocues.airsim.collect import Collection
     from aerocues.airsim.collect import collect as fly
-    from aerocues.cli.flying import show
-    from aerocues.simulation.flight import shots_in
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.live import display
     from aerocues.simulation.planner import open_survey
+    from aerocues.simulation.simulate import two_numbers
 
-    width, height = numbers(size, "x", "--size", "1000x665")
+    width, height = two_numbers("size", size, "x", SIZE)
     kind = None if flavour is None else flavour.value
-    asked = Collection(host, port, kind, int(width), int(height), fov, form, timeout)
-    chosen = open_survey(survey, asked.camera)
-    flown = show(
-        f"{asked.address}, {chosen.name}",
-        len(shots_in(chosen, subset, form)),
-        lambda tell: fly(output, chosen, asked, tell, subset),
-    )
-    kept = f", {flown.kept} kept" if flown.kept else ""
-    typer.echo(
-        f"{count(flown.rendered, 'image')} collected{kept} in {output}; "
-        f"measure them with: aerocues run airsim:{shlex.quote(str(output))}"
-    )
+    asked = Collection(host, port, kind, int(width), int(height), fov, image_format, timeout)
+    with interruptible(), display() as tally:
+        fly(output, open_survey(survey, asked.camera), asked, tally, subset)
+    report_flight(tally, "collected", "airsim", output)

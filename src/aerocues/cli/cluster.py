@@ -5,18 +5,17 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.evaluation.dask_engine import DaskEngine
-    from aerocues.evaluation.run import Limits
 
 
 @contextlib.contextmanager
 def engine_on(
-    scheduler: str | None, resource: str | None, limits: Limits, *, dask: bool
+    scheduler: str | None, resource: str | None, limits: dict[str, Any], *, dask: bool
 ) -> Iterator[DaskEngine | None]:
     """The engine of a cluster, or None for this machine.
 
@@ -39,21 +38,23 @@ def engine_on(
             "--engine dask needs an address; start 'dask scheduler' and give what it prints with "
             "--scheduler tcp://HOST:8786"
         )
-    if limits.workers:
+    if limits["workers"]:
         raise SelectionError(
             "a cluster has the workers that were started with 'dask worker'; leave --workers out"
         )
+    from aerocues.defaults import CALL_TIMEOUT
     from aerocues.evaluation.dask_engine import DaskEngine
     from aerocues.evaluation.dask_scheduler import connected
 
     with connected(scheduler) as client:
-        engine = DaskEngine(client, limits.timeout, limits.memory_limit_mb, resource)
+        engine = DaskEngine(client, limits["timeout"], limits["memory_limit"], resource)
+        limits.update(timeout=CALL_TIMEOUT, memory_limit=None)  # those of the engine hold
         _tell(engine, scheduler)
         yield engine
 
 
 def _tell(engine: DaskEngine, scheduler: str) -> None:
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
 
     threads = engine.threads
     if threads:
@@ -69,7 +70,7 @@ def _tell(engine: DaskEngine, scheduler: str) -> None:
 
 def machine_lines(table: pl.DataFrame) -> list[str]:
     """Which kinds of machine measured how many rows; nothing where it was a single one."""
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
 
     counts = sorted(table["machine"].drop_nulls().value_counts().iter_rows())
     if len(counts) < 2:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import polars as pl
     from rich.console import Console
 
-    from aerocues.scoring.across import Entry, Machines
+    from aerocues.scoring.across import ComparedResults, Machines
     from aerocues.scoring.comparison import Comparison
 
 
@@ -39,7 +39,7 @@ class Over(StrEnum):
 
 
 def compare(
-    folders: ResultsArguments,
+    results: ResultsArguments,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
@@ -73,58 +73,42 @@ def compare(
     """Compare rankings across datasets, and times across machines."""
     import aerocues
     from aerocues.cli.interruption import interruptible
-    from aerocues.cli.scoring import named
-    from aerocues.scoring.across import compare_datasets, compare_machines, entries_of
 
     with interruptible():
-        entries = entries_of(
-            [aerocues.Results(folder) for folder in folders],
+        found = aerocues.compare(
+            results,
             preset,
-            criteria=named(criteria),
+            criteria=criteria,
             reconstruction=reconstruction,
             failures=failures.value if failures else None,
             alpha=alpha,
-            weights=named(weights),
+            weights=weights,
             aggregation=aggregation,
+            over=over.value,
         )
-        comparison = compare_datasets(entries, over.value)
-        machines = compare_machines(entries, over.value)
         if factors is not None:
-            _write_factors(entries, factors)
+            _write_factors(found, factors)
     if csv is not None:
-        frame = comparison.versatility().rename({"alternative": "combination"})
-        write_table(frame, csv, "csv", "combination")
+        write_table(found.frame(), csv, "csv", "combination")
     if csv == STANDARD_OUTPUT:
         return
     if as_json:
-        print_json(_facts(entries, comparison, machines))
+        print_json(_facts(found))
     else:
-        _print(entries, comparison, machines, top, reconstruction=reconstruction)
+        _print(found, top, reconstruction=reconstruction)
 
 
-def _write_factors(entries: list[Entry], file: Path) -> None:
-    from aerocues.errors import ScoreError
+def _write_factors(found: ComparedResults, file: Path) -> None:
     from aerocues.results.export import write_file
     from aerocues.results.whole_files import json_content
-    from aerocues.scoring.platforms import device_factors
 
-    if len(entries) != 2 or entries[0].dataset != entries[1].dataset:
-        raise ScoreError("--factors needs two results of the same data set, from two machines")
-    here, there = entries
-    content = {
-        "machine": there.machine,
-        "measured_on": here.machine,
-        "dataset": here.dataset,
-        "stages": device_factors(here.rows, there.rows),
-    }
-    write_file(file, json_content(content))
+    write_file(file, json_content(found.factors()))
 
 
-def _facts(
-    entries: list[Entry], comparison: Comparison, machines: list[Machines]
-) -> dict[str, Any]:
+def _facts(found: ComparedResults) -> dict[str, Any]:
     from aerocues.cli.validate import matrix_facts
 
+    entries, comparison = found.entries, found.rankings
     return {
         "results": [
             {"name": each.name, "dataset": each.dataset, "machine": each.machine}
@@ -135,7 +119,7 @@ def _facts(
         "spearman": matrix_facts(comparison.names, comparison.spearman()),
         "kendall": matrix_facts(comparison.names, comparison.kendall()),
         "shared": comparison.shared().tolist(),
-        "versatility": comparison.versatility().rename({"alternative": "combination"}).to_dicts(),
+        "versatility": found.frame().to_dicts(),
         "machines": [
             {
                 "first": each.first.name,
@@ -145,25 +129,19 @@ def _facts(
                 "ranks": each.ranks().to_dicts(),
                 "times": each.times if isinstance(each.times, str) else each.times.to_dicts(),
             }
-            for each in machines
+            for each in found.machines
         ],
     }
 
 
-def _print(
-    entries: list[Entry],
-    comparison: Comparison,
-    machines: list[Machines],
-    top: int,
-    *,
-    reconstruction: bool,
-) -> None:
+def _print(found: ComparedResults, top: int, *, reconstruction: bool) -> None:
     import numpy as np
 
-    from aerocues.cli.console import count, print_table, standard_output
+    from aerocues.cli.console import print_table, standard_output
     from aerocues.cli.validation_tables import numbered_matrix, print_title
+    from aerocues.phrases import count
 
-    console = standard_output()
+    console, entries, comparison = standard_output(), found.entries, found.rankings
     shared = comparison.shared()[~np.eye(len(entries), dtype=bool)]
     number = (
         f"{shared.min():,}"
@@ -178,13 +156,14 @@ def _print(
         print_title(console, f"\n{name}'s rank correlation, {told}")
         print_table(console, numbered_matrix(comparison.names, values))
     _print_versatility(console, comparison, top)
-    for each in machines:
+    for each in found.machines:
         _print_machines(console, each, top)
 
 
 def _print_versatility(console: Console, comparison: Comparison, top: int) -> None:
-    from aerocues.cli.console import count, plain_table, print_table
+    from aerocues.cli.console import plain_table, print_table
     from aerocues.cli.validation_tables import print_title
+    from aerocues.phrases import count
 
     frame = comparison.versatility()
     shown = frame.head(top)

@@ -60,14 +60,3 @@ def _text(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else " ".join(str(value).split())
-
-
-def count(number: int, noun: str, plural: str | None = None) -> str:
-    """``1 row``, ``1,234 rows``."""
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
-
-
-def likelihood(probability: float) -> str:
-    """``61%``; never 0% nor 100%, as what comes from draws is never certain."""
-    rounded = f"{probability:.0%}"
-    return {"0%": "<1%", "100%": ">99%"}.get(rounded, rounded)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aerocues.cli.console import count, standard_output
+from aerocues.cli.console import standard_output
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -18,11 +19,11 @@ LONGEST_LIST = 10
 
 def print_plan(arguments: dict[str, Any]) -> None:
     """Print what `aerocues.run` would do with `arguments`."""
-    from aerocues.cli.progress import spoken_seconds
     from aerocues.evaluation.run import plan_run
     from aerocues.methods.counting import count_left_out, named
     from aerocues.methods.plugins import installed_methods
     from aerocues.methods.selection import select
+    from aerocues.phrases import spoken_seconds
 
     methods = installed_methods()
     patterns, detectors, descriptors, everything = (arguments[name] for name in SELECTION)

@@ -1,17 +1,17 @@
-"""The display of a run on a terminal: redrawn in place, gone when the run is over."""
+"""The display on a terminal: redrawn in place, gone when the work is over."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from aerocues.cli.progress import PlainLines, Tally, left_out, spoken_seconds, told_aside, waiting
-from aerocues.evaluation.engine import Activity, Finished
-from aerocues.evaluation.plan import Plan
-from aerocues.results.timing import Timing
+from aerocues.cli.progress import Tally, waiting
+from aerocues.cli.wording import in_options
+from aerocues.phrases import spoken_seconds
+from aerocues.progress import Event
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -25,40 +25,20 @@ BAR_WIDTH = 30
 
 @dataclass
 class LiveDisplay(Tally):
-    """Draws what each worker runs, the rows done, the time left and how pairs ended."""
+    """Draws what each worker runs, what is done, the time left and how rows ended."""
 
     live: Live | None = None
-    _activities: Sequence[Activity] = ()
-    _hashing: str = "reading images"
     _drawn: float = field(default=float("-inf"))
 
-    def hashing(self, done: int, total: int) -> None:
-        self._hashing = f"reading images: {done:,} of {total:,}"
-        self._draw(at_once=done == total)
-
-    def set_aside(self, rows: int) -> None:
-        if self.live:
-            self.live.console.print(told_aside(rows), soft_wrap=True, markup=False)
-
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        first = self.plan is None
-        super().planned(plan, timing)
-        if self.live and first:
-            for line in left_out(plan):  # stays above the display
-                self.live.console.print(line, soft_wrap=True, markup=False)
-        self._draw(at_once=True)
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        self._activities = activities
-        self._draw()
-
-    def finished(self, finished: Finished) -> None:
-        super().finished(finished)
-        self._draw()
-
-    def _draw(self, *, at_once: bool = False) -> None:
+    def __call__(self, event: Event) -> None:
+        begins = event.stage != self.event.stage
+        super().__call__(event)
+        if self.live is None:
+            return
+        if event.message and event.message != event.standing:  # stays above the display
+            self.live.console.print(in_options(event.message), soft_wrap=True, markup=False)
         now = self.clock()
-        if self.live and (at_once or now - self._drawn >= SECONDS_BETWEEN_DRAWINGS):
+        if begins or event.message or now - self._drawn >= SECONDS_BETWEEN_DRAWINGS:
             self._drawn = now
             self.live.update(self.picture(), refresh=True)
 
@@ -69,24 +49,28 @@ class LiveDisplay(Tally):
         from rich.table import Table
         from rich.text import Text
 
-        if self.plan is None:
-            return Group(Text(self._hashing, style="dim"))
-        bar = ProgressBar(total=1.0, completed=self.share, width=BAR_WIDTH)
-        bar_and_figures = Table.grid(padding=(0, 2))
-        bar_and_figures.add_row(bar, Text(self.progress(), no_wrap=True, overflow="ellipsis"))
-        lines = list(self._workers())
+        event = self.event
+        lines: list[Text] = list(self._workers())
         if self.statuses:
             lines.append(Text(f"so far    {self.outcomes()}", style="dim"))
+        if event.standing or not event.total:
+            return Group(Text(event.standing or event.stage), *lines)
+        done = event.done / event.total
+        bar_and_figures = Table.grid(padding=(0, 2))
+        bar_and_figures.add_row(
+            ProgressBar(total=1.0, completed=done, width=BAR_WIDTH),
+            Text(f"{event.stage}: {self.progress()}", no_wrap=True, overflow="ellipsis"),
+        )
         return Group(bar_and_figures, *lines)
 
     def _workers(self) -> Iterator[Text]:
         from rich.text import Text
 
-        for activity in self._activities:
+        for activity in self.event.workers:
             if activity.waiting_for:
                 yield Text(waiting(activity), style="dim")
                 continue
-            what = str(activity.call) if activity.call else "between two units"
+            what = str(activity.call) if activity.call else "between two calls"
             seconds = spoken_seconds(activity.seconds) if activity.seconds >= 1 else ""
             yield Text.assemble(
                 (f"worker {activity.worker + 1}  ", "dim"),
@@ -99,7 +83,31 @@ class LiveDisplay(Tally):
 
 @contextlib.contextmanager
 def display() -> Iterator[Tally]:
-    """The display that suits standard error: live on a terminal, plain lines elsewhere."""
+    """Show how work goes on: live on a terminal, in plain lines elsewhere.
+
+    Raises
+    ------
+    typer.Exit
+        If it is interrupted; what is finished is told.
+    """
+    import typer
+
+    from aerocues.cli.interruption import Interrupted
+
+    tally: Tally | None = None
+    try:
+        with _suitable() as tally:
+            yield tally
+    except Interrupted as interruption:
+        kept = f"; {tally.kept()}" if tally and tally.kept() else ""
+        sys.stderr.write(f"interrupted{kept}; run the same command again to continue\n")
+        raise typer.Exit(interruption.exit_code) from None
+
+
+@contextlib.contextmanager
+def _suitable() -> Iterator[Tally]:
+    from aerocues.cli.progress import PlainLines
+
     if not sys.stderr.isatty():
         yield PlainLines()
         return

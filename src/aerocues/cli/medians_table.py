@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aerocues.cli.console import count, plain_table, print_table, standard_output
+from aerocues.cli.console import plain_table, print_table, standard_output
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     import polars as pl

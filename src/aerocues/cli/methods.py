@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from aerocues.cli.options import DescriptorsOption, DetectorsOption, EverythingOption, JsonOption
+from aerocues.cli.options import (
+    DescriptorsOption,
+    DetectorsOption,
+    EverythingOption,
+    JsonOption,
+    PluginOption,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,6 +34,7 @@ def methods(
     preset: Annotated[
         str, typer.Option(metavar="NAME", help="Show the parameters of this preset or preset file.")
     ] = "default",
+    plugin: PluginOption = None,
 ) -> None:
     """List the installed methods, with parameters and sources."""
     if context.invoked_subcommand is not None:
@@ -51,6 +58,7 @@ def why(
         list[str],
         typer.Argument(metavar="COMBINATION", help="Combination, such as SIFT-ORB-HAM-BF."),
     ],
+    plugin: PluginOption = None,
 ) -> None:
     """Tell whether a combination can run, and if not, why."""
     from aerocues.methods.explanation import explain
@@ -70,6 +78,7 @@ def list_combinations(
     detectors: DetectorsOption = None,
     descriptors: DescriptorsOption = None,
     everything: EverythingOption = False,
+    plugin: PluginOption = None,
 ) -> None:
     """Print the selected combinations, one per line."""
     from aerocues.methods.plugins import installed_methods

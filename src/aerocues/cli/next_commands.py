@@ -6,10 +6,10 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from aerocues.reconstruction.protocol import MAX_KEYPOINTS
+from aerocues.defaults import FLIGHT_KEYPOINTS
 
 if TYPE_CHECKING:
-    from aerocues.tuning.recommend import Recommendation
+    from aerocues.tuning.recommendation import Recommendation
 
 FEW = 3
 
@@ -29,6 +29,8 @@ class AsMeasured:
     max_keypoints : int
         0 for all.
     seed : int
+    plugins : tuple of str
+        Methods of the user's own, as ``module:Class``.
     """
 
     images: str
@@ -39,6 +41,7 @@ class AsMeasured:
     preset: str
     max_keypoints: int
     seed: int
+    plugins: tuple[str, ...] = ()
 
     def words(self, max_keypoints: int) -> list[str]:
         """Images and options that differ from the defaults of `run` and `reconstruct`.
@@ -60,6 +63,8 @@ class AsMeasured:
         words = [self.images]
         for name, value, default in options:
             words += [name, f"{value}"] if value != default else []
+        for plugin in self.plugins:
+            words += ["--plugin", plugin]
         return words
 
 
@@ -72,7 +77,7 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     ]
     if found.dataset.geometry == "epipolar":
         words = ["-o", "models", *_one_scene(found), "--combinations", found.best]
-        commands.insert(0, ["reconstruct", *measured.words(MAX_KEYPOINTS), *words])
+        commands.insert(0, ["reconstruct", *measured.words(FLIGHT_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]
 
 

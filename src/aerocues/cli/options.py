@@ -7,9 +7,32 @@ from typing import Annotated
 
 import typer
 
-# A worker starts with 0.15 GB, and needs 0.3 for the quickest methods on images of 600 pixels.
-LEAST_MEMORY = 0.5
+from aerocues.defaults import LEAST_MEMORY
 
+
+def _register_all(references: list[str] | None) -> list[str] | None:
+    """Register the methods before anything is done with their names."""
+    if references:
+        import sys
+
+        from aerocues.methods.plugins import register_class
+
+        # A program that is installed does not look for modules where it is called.
+        sys.path.insert(0, str(Path.cwd()))
+        for reference in references:
+            register_class(reference)
+    return references
+
+
+PluginOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin",
+        metavar="MODULE:CLASS",
+        help="Add a method of your own, such as mymodule:RootSift; may be repeated.",
+        callback=_register_all,
+    ),
+]
 DatasetArgument = Annotated[
     str,
     typer.Argument(

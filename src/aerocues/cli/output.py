@@ -18,7 +18,7 @@ STANDARD_OUTPUT = "-"
 
 def write_table(table: pl.DataFrame, target: str, form: str, what: str = "row") -> None:
     """Write a table to a file, or to standard output where that is called ``-``."""
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
     from aerocues.results.export import export_table, table_content
 
     if target != STANDARD_OUTPUT:

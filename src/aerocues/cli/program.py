@@ -27,6 +27,7 @@ from aerocues.cli import (
     tune,
     validate,
 )
+from aerocues.cli.wording import in_options
 from aerocues.errors import AerocuesError
 
 BAD_INPUT = 2
@@ -101,7 +102,7 @@ def exit_code(arguments: Sequence[str]) -> int:
     except UsageError as error:
         return _complain(_told(error))
     except AerocuesError as error:
-        return _complain(str(error))
+        return _complain(in_options(str(error), _parameters(arguments)))
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _complain(f"{where}{error.strerror or error}; check the path, access and free space")
@@ -120,6 +121,17 @@ def _run(arguments: Sequence[str]) -> int:
     finally:
         sys.stdout.flush()
     return 0
+
+
+def _parameters(arguments: Sequence[str]) -> list[Any]:
+    """Parameters of the command that was called, then those of all commands."""
+    program: Any = typer.main.get_command(app)
+    called = program
+    for word in arguments:
+        if word not in getattr(called, "commands", {}):
+            break
+        called = called.commands[word]
+    return [*called.params, *(each for one in program.commands.values() for each in one.params)]
 
 
 def _told(error: Any) -> str:

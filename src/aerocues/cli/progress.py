@@ -1,32 +1,21 @@
-"""Progress of a run: the figures for both displays, and plain lines for files and pipes."""
+"""How work goes on, on standard error: the figures behind both displays, and plain lines."""
 
 from __future__ import annotations
 
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from aerocues.cli.console import count
-from aerocues.evaluation.engine import Activity, Finished
-from aerocues.evaluation.plan import Exclusion, Plan
-from aerocues.evaluation.run import Observer
-from aerocues.results.timing import Timing
+from aerocues.cli.wording import in_options
+from aerocues.phrases import spoken_seconds
+from aerocues.progress import Activity, Event
 
 SECONDS_BETWEEN_LINES = 10.0
 SHARE_BETWEEN_LINES = 0.1
 LONGEST_SILENCE = 60.0
-
-
-def spoken_seconds(seconds: float) -> str:
-    """``8 s``, ``4 min 05 s``, ``2 h 10 min``."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+READING = "reading images"
 
 
 def waiting(activity: Activity) -> str:
@@ -34,166 +23,130 @@ def waiting(activity: Activity) -> str:
     return f"waiting for {activity.waiting_for}, {spoken_seconds(activity.seconds)} so far"
 
 
-def left_out(plan: Plan) -> list[str]:
-    """Combinations that the images rule out: one line per reason."""
-    by_reason: dict[str, list[Exclusion]] = {}
-    for exclusion in plan.exclusions:
-        by_reason.setdefault(exclusion.reason, []).append(exclusion)
-    return [
-        f"left out: {count(len(found), 'combination')} on "
-        f"{count(max(exclusion.pairs for exclusion in found), 'pair')}, because {reason}"
-        for reason, found in by_reason.items()
-    ]
+@dataclass
+class Counted:
+    """What was there when a stage began, what there is now, and what there is to be."""
 
+    first: int
+    done: int
+    total: int
+    unit: str
 
-def told_aside(rows: int) -> str:
-    """The message about rows of other settings."""
-    return (
-        f"{count(rows, 'row')} of other images or settings are kept but ignored; rerun the command "
-        "that measured them to use them again (give -o another folder to use both)"
-    )
+    @property
+    def added(self) -> int:
+        return self.done - self.first
 
 
 @dataclass
-class Tally(Observer):
-    """The progress of a pass; `clock` returns seconds."""
+class Tally:
+    """What the events so far say; `clock` gives seconds."""
 
     clock: Callable[[], float] = time.monotonic
-    plan: Plan | None = None
-    rows_measured: int = 0
+    event: Event = field(default_factory=lambda: Event(""))
+    stages: dict[str, Counted] = field(default_factory=dict)
     statuses: Counter[str] = field(default_factory=Counter)
-    timing: Timing = "shared"
-    _started: float = 0.0
-    _rows_before: int = 0
-    _stored_before: int | None = None
-    _cost_total: float = 0.0
-    _cost_done: float = 0.0
-    _began: float = 0.0
+    began: float | None = None
+    _stage_began: float = 0.0
     _latest: float = 0.0
 
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        if self.plan is None:
-            self._started = self.clock()
-        else:
-            self._stored_before = self.rows_stored
-        self._rows_before += self.rows_measured
-        self.rows_measured, self._cost_done = 0, 0.0
-        self.statuses.clear()
-        self.plan, self.timing = plan, timing
-        self._cost_total = sum(unit.cost for unit in plan.units)
-        self._began = self._latest = self.clock()
-
-    def finished(self, finished: Finished) -> None:
-        self.rows_measured += len(finished.rows)
-        self.statuses.update(str(row["status"]) for row in finished.rows)
-        self._cost_done = min(self._cost_done + finished.unit.cost, self._cost_total)
-        self._latest = self.clock()
-
-    @property
-    def rows_stored(self) -> int:
-        return self.rows_measured + (self.plan.rows_present if self.plan else 0)
-
-    @property
-    def rows_measured_in_all(self) -> int:
-        """Rows measured by all passes; timed rows count twice."""
-        return self._rows_before + self.rows_measured
-
-    def stored(self) -> str:
-        """``36 rows are stored, 0 of 6 timed alone``."""
-        if self._stored_before is None:
-            return f"{self.rows_stored:,} rows are stored"
-        timed = f"{self.rows_stored:,} of {self.rows_planned:,} timed alone"
-        return f"{self._stored_before:,} rows are stored, {timed}"
-
-    def there_already(self) -> str:
-        """``all 36 rows are there already, 6 of them timed alone``."""
-        if self._stored_before is None:
-            return f"all {count(self.rows_stored, 'row')} are there already"
-        rows = count(self._stored_before, "row")
-        return f"all {rows} are there already, {self.rows_stored:,} of them timed alone"
-
-    def measured(self) -> str:
-        """``measured 75 rows and timed 30 alone``."""
-        if self._stored_before is None:
-            return f"measured {count(self.rows_measured, 'row')}"
-        first = f"measured {count(self._rows_before, 'row')} and " if self._rows_before else ""
-        return f"{first}timed {self.rows_measured:,} alone"
-
-    @property
-    def elapsed_in_all(self) -> float:
-        """Seconds since the first pass began."""
-        return self.clock() - self._started
-
-    @property
-    def rows_planned(self) -> int:
-        return self.plan.rows_planned if self.plan else 0
-
-    @property
-    def share(self) -> float:
-        """Share of the planned rows that exist, from 0 to 1."""
-        return self.rows_stored / self.rows_planned if self.rows_planned else 1.0
+    def __call__(self, event: Event) -> None:
+        """Take in an event."""
+        now = self.clock()
+        self.began = now if self.began is None else self.began
+        before, self.event = self.event, event
+        if event.stage != before.stage:
+            self._stage_began = self._latest = now
+            self.statuses.clear()
+        if event.share != before.share:
+            self._latest = now
+        if event.total:
+            here = Counted(event.done, event.done, event.total, event.unit)
+            here = self.stages.setdefault(event.stage, here)
+            here.done, here.total = event.done, event.total
+        self.statuses.update(str(row["status"]) for row in event.rows)
 
     @property
     def elapsed(self) -> float:
-        """Seconds since the work began."""
-        return self.clock() - self._began
+        """Seconds since the first event."""
+        return 0.0 if self.began is None else self.clock() - self.began
+
+    @property
+    def counted(self) -> list[Counted]:
+        """What stages have made, in order; reading images makes nothing."""
+        return [each for stage, each in self.stages.items() if stage != READING]
 
     def seconds_left(self) -> float | None:
-        """Estimated seconds left, by cost; None until something is done."""
-        if not self._cost_done:
+        """Seconds to go, by the cost of what is done and left; None as long as nothing is done."""
+        share = self.event.share
+        if not share:
             return None
-        pace = (self._latest - self._began) / self._cost_done
-        to_go = (self._cost_total - self._cost_done) * pace
+        to_go = (self._latest - self._stage_began) * (1 - share) / share
         return max(to_go - (self.clock() - self._latest), 0.0)
 
     def progress(self) -> str:
         """``1,200 of 13,600 rows (9 %), 1 min 10 s so far, about 12 min 05 s left``."""
-        left = self.seconds_left()
-        ending = f", {spoken_seconds(self.elapsed)} so far"
+        event, left = self.event, self.seconds_left()
+        ending = f", {spoken_seconds(self.clock() - self._stage_began)} so far"
         ending += "" if left is None or left < 1 else f", about {spoken_seconds(left)} left"
-        share = f"{int(100 * self.share)} %"
-        rows = "rows timed alone" if self.timing == "exclusive" else "rows"
-        return f"{self.rows_stored:,} of {self.rows_planned:,} {rows} ({share}){ending}"
+        if not event.total:
+            return f"{event.stage}{ending}"
+        share = f"{int(100 * event.done / event.total)} %"
+        return f"{event.done:,} of {event.total:,} {event.unit} ({share}){ending}"
 
     def outcomes(self) -> str:
-        """``ok 1,100, chance 80, crashed 20``: statuses of this run, ok first."""
+        """``ok 1,100, chance 80, crashed 20``: of what this stage finished, ok first."""
         ordered = sorted(self.statuses.items(), key=lambda item: (item[0] != "ok", -item[1]))
         return ", ".join(f"{status} {number:,}" for status, number in ordered)
+
+    def kept(self) -> str:
+        """``36 of 36 rows, 2 of 6 rows timed alone are finished``; empty where nothing is."""
+        finished = ", ".join(
+            f"{each.done:,} of {each.total:,} {each.unit}" for each in self.counted
+        )
+        return f"{finished} are finished" if finished else ""
 
 
 @dataclass
 class PlainLines(Tally):
-    """Occasional lines on standard error."""
+    """A line for each message, and one now and then that says how things stand."""
 
     _line_time: float = 0.0
     _line_share: float = 0.0
+    _line_standing: str = ""
     _waits: bool = False
 
-    def set_aside(self, rows: int) -> None:
-        self._say(told_aside(rows))
+    def __call__(self, event: Event) -> None:
+        begins = event.stage != self.event.stage
+        super().__call__(event)
+        if begins:
+            self._remember()
+        if event.message:
+            self._say(event.message)
+        elif event.stage != READING:
+            self._say_now_and_then()
 
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        first = self.plan is None
-        super().planned(plan, timing)
-        self._line_time, self._line_share = self.clock(), self.share
-        for line in left_out(plan) if first else ():
-            self._say(line)
-        if not plan.rows_left:
-            return
-        present = f"; {plan.rows_present:,} rows are there already" if plan.rows_present else ""
-        units = count(len(plan.units), "unit")
-        what = "to time, one call at a time," if timing == "exclusive" else "to measure"
-        self._say(f"{count(plan.rows_left, 'row')} {what} in {units} of work{present}")
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        silent = self.clock() - self._line_time
-        moved = self.share - self._line_share >= SHARE_BETWEEN_LINES
-        told = [waiting(activity) for activity in activities if activity.waiting_for]
+    def _say_now_and_then(self) -> None:
+        event = self.event
+        told = [waiting(each) for each in event.workers if each.waiting_for]
         begins, self._waits = bool(told) and not self._waits, bool(told)
+        moved = (
+            self._share() - self._line_share >= SHARE_BETWEEN_LINES
+            or event.standing != self._line_standing
+        )
+        silent = self.clock() - self._line_time
         if begins or silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
-            self._line_time, self._line_share = self.clock(), self.share
-            self._say("; ".join(filter(None, (*told, self.progress(), self.outcomes()))))
+            calls = () if moved or told else (str(each.call) for each in event.workers if each.call)
+            stands = event.standing or self.progress()
+            self._say("; ".join(filter(None, (*told, stands, self.outcomes(), *calls))))
+
+    def _share(self) -> float:
+        return self.event.done / self.event.total if self.event.total else 0.0
+
+    def _remember(self) -> None:
+        self._line_time, self._line_share = self.clock(), self._share()
+        self._line_standing = self.event.standing
 
     def _say(self, line: str) -> None:
-        sys.stderr.write(f"{line}\n")
+        self._remember()
+        sys.stderr.write(f"{in_options(line)}\n")
         sys.stderr.flush()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aerocues.cli.console import count
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     from aerocues.scoring.measured import MeasuredTable

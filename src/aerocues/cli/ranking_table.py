@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aerocues.cli.console import count, plain_table, print_table, standard_output
+from aerocues.cli.console import plain_table, print_table, standard_output
 from aerocues.cli.ranking_notes import mixed_machines, notes
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import shlex
-import sys
 import time
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,20 +18,18 @@ from aerocues.cli.options import (
     MaxWidthOption,
     MethodPresetOption,
     PairsOption,
+    PluginOption,
     SeedOption,
     SubsetOption,
     TopOption,
     WorkersOption,
 )
+from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
 
 if TYPE_CHECKING:
     from aerocues.cli.next_commands import AsMeasured
     from aerocues.datasets.dataset import Dataset
-    from aerocues.tuning.recommend import RaceOptions, Recommendation
-
-WIDTH = 1000
-# As `aerocues.reconstruction.protocol.MAX_KEYPOINTS`, which takes longer to import than help may.
-KEYPOINTS = 8000
+    from aerocues.tuning.recommendation import Recommendation
 
 
 class Objective(StrEnum):
@@ -46,10 +43,10 @@ class Objective(StrEnum):
 
 
 def recommend(
-    images: DatasetArgument,
+    dataset: DatasetArgument,
     budget: Annotated[
         str, typer.Option(metavar="TIME", help="Total time, such as 90s, 5min or 1h.")
-    ] = "5min",
+    ] = f"{RACE_SECONDS / 60:g}min",
     objective: Annotated[
         Objective, typer.Option(help="What the combination is used for.")
     ] = Objective.BALANCED,
@@ -77,12 +74,12 @@ def recommend(
     ] = None,
     combinations: CombinationsOption = None,
     preset: MethodPresetOption = "default",
-    max_keypoints: MaxKeypointsOption = KEYPOINTS,
-    max_width: MaxWidthOption = WIDTH,
+    max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
+    max_width: MaxWidthOption = RACE_WIDTH,
     pairs: PairsOption = None,
     max_pairs: Annotated[
         int, typer.Option(min=2, metavar="N", help="Maximum number of representative pairs.")
-    ] = 24,
+    ] = RACE_PAIRS,
     subset: SubsetOption = None,
     equalize: EqualizeOption = "none",
     sure: Annotated[
@@ -93,9 +90,10 @@ def recommend(
             metavar="P",
             help="End the race when the leader is this likely the best.",
         ),
-    ] = 0.95,
+    ] = SURE,
     workers: WorkersOption = None,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Recommend a combination for images, in minutes.
 
@@ -103,65 +101,38 @@ def recommend(
     win. After an interruption run the same command again: it continues.
     """
     began = time.monotonic()
-    from aerocues.cli.durations import parse_duration
+    import aerocues
     from aerocues.cli.interruption import interruptible
+    from aerocues.cli.live import display
     from aerocues.cli.next_commands import AsMeasured
-    from aerocues.datasets.catalog import open_dataset
-    from aerocues.tuning.device import read_device
-    from aerocues.tuning.recommend import RaceOptions
 
     with interruptible():
-        dataset = open_dataset(
-            images, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset
+        images = aerocues.open_dataset(
+            dataset, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset
         )
-        options = RaceOptions(
-            budget=parse_duration(budget, "--budget"),
-            objective=objective.value,
-            sure=sure,
-            pairs=max_pairs,
-            seed=seed,
-            device=read_device(device) if device else None,
-            began=began,
-        )
-        arguments = {
-            "output": output or Path(f"{dataset.name}-race"),
-            "combinations": combinations,
-            "preset": preset,
-            "limit": _limit(max_keypoints),
-            "limits": _limits(workers),
-        }
-        found = _race(dataset, options, arguments)
+        with display() as tally:
+            found = aerocues.recommend(
+                images,
+                combinations,
+                output,
+                budget=budget,
+                objective=objective.value,
+                sure=sure,
+                max_pairs=max_pairs,
+                max_keypoints=max_keypoints,
+                preset=preset,
+                device=device,
+                seed=seed,
+                workers=workers,
+                began=began,
+                progress=tally,
+            )
         _print(found, top, explain=explain)
-        width = _shrunk(dataset, max_width)
-        same = AsMeasured(images, pairs, subset, equalize, width, preset, max_keypoints, seed)
+        opened = (dataset, pairs, subset, equalize, _shrunk(images, max_width))
+        same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()))
         _print_next(found, same)
         if report is not None:
             _write_report(found, report)
-
-
-def _limit(max_keypoints: int) -> Any:
-    from aerocues.methods.strongest import KeypointLimit
-
-    return KeypointLimit(max_keypoints)
-
-
-def _limits(workers: int | None) -> Any:
-    from aerocues.evaluation.run import Limits
-
-    return Limits(workers=workers)
-
-
-def _race(dataset: Dataset, options: RaceOptions, arguments: dict[str, Any]) -> Recommendation:
-    from aerocues.cli.interruption import Interrupted
-    from aerocues.cli.race_progress import follow
-    from aerocues.tuning.recommend import recommend as race
-
-    try:
-        with follow(options.budget) as follower:
-            return race(dataset, options=options, follower=follower, **arguments)
-    except Interrupted as interruption:
-        sys.stderr.write("interrupted; run the same command again to go on\n")
-        raise typer.Exit(interruption.exit_code) from None
 
 
 def _print(found: Recommendation, top: int, *, explain: bool) -> None:

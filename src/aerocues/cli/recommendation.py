@@ -5,15 +5,15 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from aerocues.cli.console import count, likelihood, plain_table
-from aerocues.cli.progress import spoken_seconds
+from aerocues.cli.console import plain_table
+from aerocues.phrases import count, likelihood, spoken_seconds
 
 if TYPE_CHECKING:
     import polars as pl
     from rich.table import Table
 
     from aerocues.tuning.race import RaceOutcome
-    from aerocues.tuning.recommend import Recommendation
+    from aerocues.tuning.recommendation import Recommendation
 
 WIDTH = 100
 PROBABLE = 0.5

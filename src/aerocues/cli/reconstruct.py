@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,20 +17,18 @@ from aerocues.cli.options import (
     MaxWidthOption,
     MemoryLimitOption,
     PairsOption,
+    PluginOption,
     RetryFailedOption,
     SeedOption,
     SequencesOption,
     SubsetOption,
     WorkersOption,
 )
+from aerocues.defaults import FLIGHT_KEYPOINTS, STAGE_TIMEOUT
 
 if TYPE_CHECKING:
-    from aerocues.cli.reconstruction_progress import Reporter
-    from aerocues.datasets.dataset import Dataset
     from aerocues.reconstruction.models import Models
-    from aerocues.reconstruction.options import ReconstructionOptions
 
-MEGABYTES = 1024
 NOTHING_SUCCEEDED = 1
 
 
@@ -77,7 +74,7 @@ def reconstruct(
     pairs: PairsOption = None,
     subset: SubsetOption = None,
     sequences: SequencesOption = None,
-    max_keypoints: MaxKeypointsOption = 8000,
+    max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
     max_width: MaxWidthOption = None,
     equalize: Annotated[str | None, EQUALIZE] = None,
     intrinsics: Annotated[
@@ -112,11 +109,12 @@ def reconstruct(
         ),
     ] = None,
     workers: WorkersOption = None,
-    time_limit: Annotated[
-        float, typer.Option(min=0.001, metavar="SECONDS", help="CPU time limit of one stage.")
-    ] = 1800.0,
+    timeout: Annotated[
+        str, typer.Option(metavar="TIME", help="CPU time limit of one stage, such as 30min.")
+    ] = f"{STAGE_TIMEOUT / 60:g}min",
     memory_limit: MemoryLimitOption = None,
     retry_failed: RetryFailedOption = False,
+    plugin: PluginOption = None,
 ) -> None:
     """Make a COLMAP model of a scene with each chosen combination.
 
@@ -124,86 +122,48 @@ def reconstruct(
     an interruption run the same command again: it continues. The exit code is 1 if no model in
     the folder succeeded.
     """
+    import aerocues
     from aerocues.cli.interruption import interruptible
-    from aerocues.errors import ReconstructionError
-    from aerocues.modelling import open_as_measured, preset_of_results
+    from aerocues.cli.live import display
+    from aerocues.modelling import open_as_measured
 
-    if combinations is not None and top is not None:
-        raise ReconstructionError("--top chooses out of --from; leave it or --combinations out")
+    measured = None if results is None else aerocues.Results(results)
     with interruptible():
         scene = open_as_measured(
             dataset,
-            results,
+            measured,
             pairs=pairs,
             max_width=max_width,
             equalize=equalize,
             sequences=sequences,
             subset=subset,
         )
-        options = _options(
-            {
-                "max_keypoints": max_keypoints,
-                "intrinsics": intrinsics.value,
-                "focal_length": focal_length,
-                "mapper": mapper.value,
-                "seed": seed,
-            },
-            colours=colours,
-            undistorted=undistort,
-            preset=preset or preset_of_results(results),
-            reference=reference,
-            features=features,
-            workers=workers,
-            time_limit=time_limit,
-            memory_limit_mb=None if memory_limit is None else int(memory_limit * MEGABYTES),
-            retry_failed=retry_failed,
-        )
-        models = _reconstruct(scene, output, combinations, results, top, options)
+        with display() as tally:
+            models = aerocues.reconstruct(
+                scene,
+                combinations,
+                output,
+                results=measured,
+                top=top,
+                preset=preset,
+                max_keypoints=max_keypoints,
+                intrinsics=intrinsics.value,
+                focal_length=focal_length,
+                mapper=mapper.value,
+                reference=reference,
+                colours=colours,
+                undistort=undistort,
+                seed=seed,
+                features=features,
+                workers=workers,
+                timeout=timeout,
+                memory_limit=memory_limit,
+                retry_failed=retry_failed,
+                progress=tally,
+            )
         succeeded = _print(models, dataset, results)
     if not succeeded:
         raise typer.Exit(NOTHING_SUCCEEDED)
-
-
-def _options(
-    protocol: dict[str, Any], *, colours: bool, undistorted: bool, **others: Any
-) -> ReconstructionOptions:
-    from aerocues.reconstruction.options import ReconstructionOptions
-    from aerocues.reconstruction.protocol import ReconstructionProtocol
-    from aerocues.reconstruction.scene import Wanted
-
-    return ReconstructionOptions(
-        protocol=ReconstructionProtocol(**protocol), wanted=Wanted(colours, undistorted), **others
-    )
-
-
-def _reconstruct(
-    scene: Dataset,
-    output: Path,
-    combinations: str | None,
-    results: Path | None,
-    top: int | None,
-    options: ReconstructionOptions,
-) -> Models:
-    from aerocues.cli.interruption import Interrupted
-    from aerocues.cli.reconstruction_progress import reporter
-    from aerocues.modelling import reconstruct as make
-
-    shown: Reporter | None = None
-    try:
-        with reporter() as shown:
-            return make(
-                scene,
-                output,
-                combinations,
-                results=results,
-                top=top,
-                options=options,
-                observer=shown,
-            )
-    except Interrupted as interruption:
-        kept = f"; {shown.done} of {shown.total} are finished" if shown and shown.total else ""
-        sys.stderr.write(f"interrupted{kept}; run the same command again to go on\n")
-        raise typer.Exit(interruption.exit_code) from None
 
 
 def _print(models: Models, dataset: str, results: Path | None) -> bool:

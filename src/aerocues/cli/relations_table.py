@@ -27,14 +27,15 @@ HEADINGS = {
 
 
 def found_relations(results: Measured, preset: str | None, dataset: str | None) -> Relations | str:
-    """The relations, or the reason why there are none."""
+    """The relations, or why there are none."""
+    from aerocues.cli.wording import in_options
     from aerocues.errors import ScoreError
     from aerocues.scoring.outcomes import relate_outcomes
 
     try:
         return relate_outcomes(results, preset, dataset=dataset)
     except ScoreError as error:
-        return str(error)
+        return in_options(str(error))
 
 
 def print_relations(found: Relations | str) -> None:

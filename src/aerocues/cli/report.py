@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.options import ResultsArguments
+from aerocues.cli.options import PluginOption, ResultsArguments
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -20,8 +20,10 @@ from aerocues.cli.scoring import (
     SeedOption,
     WeightsOption,
 )
+from aerocues.defaults import MEGABYTES, PICTURED, RESAMPLES
 
 if TYPE_CHECKING:
+    from aerocues.progress import Event
     from aerocues.report.entry import ReportEntry
 
 STANDARD_OUTPUT = "-"
@@ -36,7 +38,7 @@ class Format(StrEnum):
 
 
 def report(
-    folders: ResultsArguments,
+    results: ResultsArguments,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -64,7 +66,7 @@ def report(
     pictures: Annotated[
         int,
         typer.Option(min=0, metavar="N", help="Number of combinations with pictures, per dataset."),
-    ] = 4,
+    ] = PICTURED,
     max_megabytes: Annotated[
         float,
         typer.Option(
@@ -72,7 +74,7 @@ def report(
             metavar="MB",
             help="Size limit of the page: pictures and clouds beyond it are left out.",
         ),
-    ] = 15,
+    ] = MEGABYTES,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
@@ -82,8 +84,9 @@ def report(
     reconstruction: ReconstructionOption = None,
     resamples: Annotated[
         int, typer.Option(min=2, metavar="N", help="Number of bootstrap resamples.")
-    ] = 1000,
+    ] = RESAMPLES,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Write all results into one interactive page.
 
@@ -91,21 +94,20 @@ def report(
     """
     import aerocues
     from aerocues.cli.interruption import interruptible
-    from aerocues.cli.scoring import named
     from aerocues.report.report import report_entries, write_page
 
     with interruptible():
         entries = report_entries(
-            [aerocues.Results(folder) for folder in folders],
+            [aerocues.Results(each) for each in results],
             preset,
-            criteria=named(criteria),
+            criteria=criteria,
             reconstruction=reconstruction,
             resamples=resamples,
             seed=seed,
             progress=_tell,
             failures=failures.value if failures else None,
             alpha=alpha,
-            weights=named(weights),
+            weights=weights,
             aggregation=aggregation,
         )
         if figures is not None:
@@ -129,14 +131,16 @@ def report(
         typer.launch(str(page))
 
 
-def _tell(what: str) -> None:
+def _tell(event: Event) -> None:
     """Say what is being done, where somebody may be waiting."""
+    from aerocues.cli.wording import in_options
+
     if sys.stderr.isatty():
-        sys.stderr.write(f"{what}\n")
+        sys.stderr.write(f"{in_options(event.message)}\n")
 
 
 def _write_figures(entries: list[ReportEntry], folder: Path) -> None:
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
     from aerocues.report.figures import write_figures
 
     files = write_figures(entries, folder)

@@ -82,7 +82,7 @@ def results(
 
 
 def _pack(found: Results, target: Path) -> None:
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
 
     if str(target) == STANDARD_OUTPUT:
         raise typer.BadParameter("a packed folder needs the name of a file, such as results.zip")
@@ -114,8 +114,9 @@ def _print_columns() -> None:
 def _print_summary(found: Results, top: int) -> None:
     from rich.text import Text
 
-    from aerocues.cli.console import count, standard_output
+    from aerocues.cli.console import standard_output
     from aerocues.cli.medians_table import print_medians
+    from aerocues.phrases import count
 
     table, settings = found.table(), found.settings
     console = standard_output()

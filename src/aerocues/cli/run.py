@@ -23,6 +23,7 @@ from aerocues.cli.options import (
     MemoryLimitOption,
     MethodPresetOption,
     PairsOption,
+    PluginOption,
     RetryFailedOption,
     SeedOption,
     SequencesOption,
@@ -30,18 +31,14 @@ from aerocues.cli.options import (
     TopOption,
     WorkersOption,
 )
+from aerocues.defaults import CALL_TIMEOUT, TIMED_PAIRS
 
 if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.cli.progress import Tally
-    from aerocues.methods.strongest import KeypointLimit
     from aerocues.results.measured_results import Results
     from aerocues.scoring.measured import Measured
-
-MEGABYTES = 1024
-# As `aerocues.evaluation.passes.TIMED_PAIRS`, which takes longer to import than help may take.
-TIMED_PAIRS = 5
 
 
 class Engine(StrEnum):
@@ -79,7 +76,7 @@ def run(
     ] = False,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
-    limit: Annotated[
+    max_pairs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Use only the first N pairs.")
     ] = None,
     sequences: SequencesOption = None,
@@ -116,9 +113,8 @@ def run(
     ] = None,
     seed: SeedOption = 0,
     timeout: Annotated[
-        float | None,
-        typer.Option(metavar="SECONDS", help="CPU time limit of one call; 600 by default."),
-    ] = None,
+        str, typer.Option(metavar="TIME", help="CPU time limit of one call, such as 90s or 10min.")
+    ] = f"{CALL_TIMEOUT:g}s",
     memory_limit: MemoryLimitOption = None,
     features: FeaturesOption = None,
     retry_failed: RetryFailedOption = False,
@@ -126,6 +122,7 @@ def run(
         bool, typer.Option("--dry-run", help="Show the plan without measuring or writing anything.")
     ] = False,
     top: TopOption = 15,
+    plugin: PluginOption = None,
 ) -> None:
     """Measure combinations on the image pairs of a dataset.
 
@@ -142,7 +139,7 @@ def run(
             pairs=pairs,
             max_width=max_width,
             equalize=equalize,
-            limit=limit,
+            max_pairs=max_pairs,
             sequences=sequences,
             subset=subset,
         )
@@ -154,10 +151,11 @@ def run(
             "descriptors": descriptors,
             "everything": everything,
             "preset": preset,
+            "max_keypoints": max_keypoints,
+            "spread": spread,
             "seed": seed,
             "timing": timing.value,
-            "timed_pairs": _timed_pairs(timing, timing_pairs),
-            "limit": _limit(max_keypoints, spread),
+            "timing_pairs": timing_pairs,
             "retry_failed": retry_failed,
         }
         if dry_run:
@@ -165,70 +163,38 @@ def run(
 
             print_plan(arguments)
             return
-        limits = _limits(workers, timeout, memory_limit)
-        arguments |= {"limits": limits, "features": features}
+        limits = {"workers": workers, "timeout": timeout, "memory_limit": memory_limit}
+        arguments |= {**limits, "features": features}
         with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
             results = _measure({**arguments, "engine": chosen})
         _print_results(results, images.name, top)
 
 
-def _timed_pairs(timing: Timing, asked: int | None) -> int:
-    from aerocues.errors import SelectionError
-
-    if asked is not None and timing is not Timing.EXCLUSIVE:
-        raise SelectionError(
-            f"--timing-pairs is for pairs that are timed alone, and --timing {timing.value} times "
-            "none so; leave one of the two out"
-        )
-    return TIMED_PAIRS if asked is None else asked
-
-
-def _limit(max_keypoints: int, spread: bool) -> KeypointLimit:
-    from aerocues.errors import SelectionError
-    from aerocues.methods.strongest import KeypointLimit
-
-    if spread and not max_keypoints:
-        raise SelectionError("--spread chooses which keypoints are kept; give --max-keypoints, too")
-    return KeypointLimit(max_keypoints, spread)
-
-
-def _limits(workers: int | None, timeout: float | None, memory_limit: float | None) -> Any:
-    from aerocues.evaluation.run import DEFAULT_TIMEOUT, Limits
-
-    return Limits(
-        workers=workers,
-        timeout=DEFAULT_TIMEOUT if timeout is None else timeout,
-        memory_limit_mb=None if memory_limit is None else int(memory_limit * MEGABYTES),
-    )
-
-
 def _measure(arguments: dict[str, Any]) -> Results:
     import aerocues
-    from aerocues.cli.interruption import Interrupted
     from aerocues.cli.live import display
 
-    tally: Tally | None = None
-    try:
-        with display() as tally:
-            results = aerocues.run(**arguments, observer=tally)
-    except Interrupted as interruption:
-        stored = f"; {tally.stored()}" if tally and tally.plan else ""
-        sys.stderr.write(f"interrupted{stored}; run the same command again to go on\n")
-        raise typer.Exit(interruption.exit_code) from None
-    _report_end(tally)
+    with display() as tally:
+        results = aerocues.run(**arguments, progress=tally)
+    sys.stderr.write(f"{_end(tally)}\n\n")
     return results
 
 
-def _report_end(tally: Tally) -> None:
-    from aerocues.cli.progress import spoken_seconds
+def _end(tally: Tally) -> str:
+    """What was measured, and how long that took."""
+    from aerocues.phrases import count, spoken_seconds
 
-    if tally.rows_measured_in_all:
-        line = f"{tally.measured()} in {spoken_seconds(tally.elapsed_in_all)}"
-    elif tally.rows_stored:
-        line = f"nothing to measure: {tally.there_already()}"
-    else:
-        line = "nothing to measure: the images rule out all combinations that were chosen"
-    sys.stderr.write(f"{line}\n\n")
+    measured, timed = (
+        tally.stages[stage].added if stage in tally.stages else 0
+        for stage in ("measuring", "timing")
+    )
+    told = [f"measured {count(measured, 'row')}"] if measured else []
+    told += [f"timed {timed:,} alone"] if timed else []
+    if told:
+        return f"{' and '.join(told)} in {spoken_seconds(tally.elapsed)}"
+    if there := max((each.done for each in tally.counted), default=0):
+        return f"nothing to measure: all {count(there, 'row')} are there already"
+    return "nothing to measure: the images rule out all combinations that were chosen"
 
 
 def _print_results(results: Results, dataset: str, top: int) -> None:
@@ -269,6 +235,7 @@ def _next(folder: str, table: pl.DataFrame) -> tuple[str, ...]:
 def _print_ranking(rows: Measured, top: int) -> None:
     from aerocues.cli.console import standard_output
     from aerocues.cli.ranking_table import print_best
+    from aerocues.cli.wording import in_options
     from aerocues.errors import ScoreError
     from aerocues.scoring.measured import table_of
     from aerocues.scoring.ranking import rank_alternatives
@@ -278,4 +245,5 @@ def _print_ranking(rows: Measured, top: int) -> None:
         print_best(rank_alternatives(measured.table, measured.preset.settings), measured, top)
     except ScoreError as error:
         # The rows are there and of use, if only to see why none can be ranked.
-        standard_output().print(f"no ranking: {error}", soft_wrap=True, markup=False)
+        told = in_options(str(error))
+        standard_output().print(f"no ranking: {told}", soft_wrap=True, markup=False)

@@ -20,6 +20,7 @@ from aerocues.cli.scoring import (
     SeedOption,
     WeightsOption,
 )
+from aerocues.defaults import RESAMPLES, TOP_K
 
 if TYPE_CHECKING:
     from aerocues.scoring.ranking import Ranking
@@ -54,7 +55,7 @@ def score(
     dataset: DatasetOption = None,
     resamples: Annotated[
         int, typer.Option(min=2, metavar="N", help="Number of bootstrap resamples.")
-    ] = 1000,
+    ] = RESAMPLES,
     seed: SeedOption = 0,
     interval: Annotated[
         Interval,
@@ -69,7 +70,7 @@ def score(
         typer.Option(
             min=1, metavar="K", help="Number of first places that probability_top counts."
         ),
-    ] = 5,
+    ] = TOP_K,
     as_json: JsonOption = False,
     csv: Annotated[
         str | None,

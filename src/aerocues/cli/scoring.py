@@ -83,13 +83,6 @@ SeedOption = Annotated[
 ]
 
 
-def named(names: str | None) -> tuple[str, ...] | None:
-    """Names from a list with commas; None stays."""
-    if names is None:
-        return None
-    return tuple(name.strip() for name in names.split(",") if name.strip())
-
-
 def table_and_settings(
     results: Measured,
     *,
@@ -108,7 +101,7 @@ def table_and_settings(
     found = table_of(
         results,
         preset,
-        criteria=named(criteria),
+        criteria=criteria,
         dataset=dataset,
         reconstruction=reconstruction,
     )
@@ -116,7 +109,7 @@ def table_and_settings(
         found.preset,
         failures=failures.value if failures else None,
         alpha=alpha,
-        weights=named(weights),
+        weights=weights,
         aggregation=aggregation,
     )
     return found, settings

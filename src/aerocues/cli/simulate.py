@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import shlex
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.console import count
 from aerocues.cli.options import (
     FieldOfViewOption,
     FlightOption,
@@ -17,9 +15,13 @@ from aerocues.cli.options import (
     SubsetOption,
     SurveyOption,
 )
+from aerocues.defaults import SIZE, SUN
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
-    from aerocues.simulation.flight import Settings
+    from pathlib import Path
+
+    from aerocues.cli.progress import Tally
 
 
 def simulate(
@@ -31,7 +33,7 @@ def simulate(
         typer.Option(metavar="NAME", help="Scene: suburb, fields or industrial."),
     ] = "suburb",
     seed: SeedOption = 0,
-    size: Annotated[str, typer.Option(metavar="WxH", help="Image size in pixels.")] = "1000x665",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Image size in pixels.")] = SIZE,
     fov: FieldOfViewOption = 90.0,
     sun: Annotated[
         str,
@@ -39,7 +41,7 @@ def simulate(
             metavar="AZ,EL",
             help="Position of the sun: azimuth from north and elevation, in degrees.",
         ),
-    ] = "140,48",
+    ] = SUN,
     haze: Annotated[
         float, typer.Option(min=0.0, metavar="AMOUNT", help="Haze; 0: clear air.")
     ] = 0.2,
@@ -78,54 +80,42 @@ def simulate(
             help="How far the wind moves tree crowns between images; needs --interval.",
         ),
     ] = 0.0,
-    form: ImageFormatOption = "png",
+    image_format: ImageFormatOption = "png",
 ) -> None:
     """Simulate a survey flight: images, poses and depth. Continues an interrupted flight."""
-    from aerocues.simulation.flight import Settings
-    from aerocues.simulation.lighting import Weather
-    from aerocues.simulation.sensor import Sensor
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.live import display
+    from aerocues.simulation.simulate import fly_survey
 
-    width, height = numbers(size, "x", "--size", "1000x665")
-    azimuth, elevation = numbers(sun, ",", "--sun", "140,48")
-    settings = Settings(
-        scene=scene,
-        seed=seed,
-        width=int(width),
-        height=int(height),
-        fov=fov,
-        weather=Weather(azimuth, elevation, haze, glints),
-        sensor=Sensor(noise, blur, motion, exposure_jitter=exposure_jitter),
-        interval=interval,
-        wind=wind,
-        form=form,
-    )
-    _fly(output, survey, settings, subset)
+    with interruptible(), display() as tally:
+        fly_survey(
+            survey,
+            output,
+            scene=scene,
+            subset=subset,
+            seed=seed,
+            size=size,
+            fov=fov,
+            sun=sun,
+            haze=haze,
+            glints=glints,
+            noise=noise,
+            blur=blur,
+            motion=motion,
+            exposure_jitter=exposure_jitter,
+            interval=interval,
+            wind=wind,
+            image_format=image_format,
+            progress=tally,
+        )
+    report_flight(tally, "rendered", "simulated", output)
 
 
-def _fly(folder: Path, spec: str, settings: Settings, subset: str | None) -> None:
-    from aerocues.cli.flying import show
-    from aerocues.simulation.flight import shots_in
-    from aerocues.simulation.flight import simulate as fly
-    from aerocues.simulation.planner import open_survey
-
-    survey = open_survey(spec, settings.camera)
-    total = len(shots_in(survey, subset, settings.form))
-    flown = show(
-        f"{settings.scene}, {survey.name}",
-        total,
-        lambda tell: fly(folder, survey, settings, tell, subset),
-    )
-    kept = f", {flown.kept} kept" if flown.kept else ""
+def report_flight(tally: Tally, made: str, kind: str, folder: Path) -> None:
+    """Print what was made, and what to do with it."""
+    (images,) = tally.counted
+    kept = f", {images.first} kept" if images.first else ""
     typer.echo(
-        f"{count(flown.rendered, 'image')} rendered{kept} in {folder}; "
-        f"measure them with: aerocues run simulated:{shlex.quote(str(folder))}"
+        f"{count(images.added, 'image')} {made}{kept} in {folder}; "
+        f"measure them with: aerocues run {kind}:{shlex.quote(str(folder))}"
     )
-
-
-def numbers(text: str, mark: str, option: str, example: str) -> tuple[float, float]:
-    """The two numbers of an option, which `mark` separates."""
-    try:
-        first, second = (float(part) for part in text.lower().split(mark))
-    except ValueError as error:
-        raise typer.BadParameter(f"{option} must be like {example}, got {text}") from error
-    return first, second

@@ -83,7 +83,7 @@ def _print_status(found: RunStatus, folder: Path) -> None:
     if found.left or found.untimed:
         first = "unzip it and " if folder.is_file() else ""
         where = "FOLDER" if folder.is_file() else folder
-        told = f"{first}run the same command again (-o {where}) to go on"
+        told = f"{first}run the same command again (-o {where}) to continue"
         console.print(Text(f"\n{told}"))
 
 
@@ -98,7 +98,7 @@ def times_of(timings: Mapping[str, int], disturbed: int) -> str:
 
 def _exclusions(found: RunStatus) -> Iterator[str]:
     """A line for each reason and number of pairs."""
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
 
     combinations: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
     for exclusion in found.exclusions:

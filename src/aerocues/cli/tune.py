@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,15 +12,17 @@ from aerocues.cli.options import (
     MaxKeypointsOption,
     MaxWidthOption,
     PairsOption,
+    PluginOption,
     SeedOption,
     WorkersOption,
 )
+from aerocues.defaults import TUNING_PAIRS
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from aerocues.datasets.dataset import Dataset
     from aerocues.tuning.search import Finding
-    from aerocues.tuning.search_spaces import SearchSpace
     from aerocues.tuning.tune import Tuned
 
 
@@ -39,10 +40,12 @@ def tune(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="FILE", help="Preset file to write (JSON).")
     ],
-    validate: Annotated[
+    validation: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="DATASET", help="Validate on this dataset; by default on held-out scenes."
+            "--validate",
+            metavar="DATASET",
+            help="Validate on this dataset; by default on held-out scenes.",
         ),
     ] = None,
     grid: Annotated[
@@ -66,7 +69,7 @@ def tune(
     max_pairs: Annotated[
         int,
         typer.Option(min=3, metavar="N", help="Number of training pairs, and of validation pairs."),
-    ] = 16,
+    ] = TUNING_PAIRS,
     max_width: MaxWidthOption = None,
     results: Annotated[
         Path | None,
@@ -74,86 +77,50 @@ def tune(
     ] = None,
     workers: WorkersOption = None,
     seed: SeedOption = 0,
+    plugin: PluginOption = None,
 ) -> None:
     """Search parameters on some scenes and keep those that also help on other scenes.
 
     After an interruption run the same command again: it continues.
     """
-    from aerocues.cli.durations import parse_duration
-    from aerocues.cli.interruption import Interrupted, interruptible
-    from aerocues.datasets.catalog import open_dataset
-    from aerocues.evaluation.run import Limits
-    from aerocues.methods.strongest import KeypointLimit
-    from aerocues.tuning.grids import read_grid
-    from aerocues.tuning.tune import TuneOptions
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.live import display
     from aerocues.tuning.tune import tune as search
 
     with interruptible():
         opened, others = (
-            [_opened(open_dataset, spec, pairs, max_width) for spec in specs or ()]
-            for specs in (datasets, validate)
+            [_opened(spec, pairs, max_width) for spec in specs or ()]
+            for specs in (datasets, validation)
         )
-        options = TuneOptions(
-            objective=objective,
-            pairs=max_pairs,
-            seed=seed,
-            budget=parse_duration(budget, "--budget") if budget else float("inf"),
-            limit=KeypointLimit(max_keypoints),
-        )
-        try:
+        with display() as tally:
             tuned = search(
-                [name for name in methods.split(",") if name.strip()],
                 opened,
+                methods,
                 output,
                 validation=others,
-                grid=read_grid(grid) if grid else None,
-                options=options,
+                grid=grid,
+                objective=objective,
+                max_pairs=max_pairs,
+                max_keypoints=max_keypoints,
+                budget=budget,
+                seed=seed,
                 results=results,
-                limits=Limits(workers=workers),
-                listener=_listener(),
+                workers=workers,
+                progress=tally,
             )
-        except Interrupted as interruption:
-            sys.stderr.write("interrupted; run the same command again to go on\n")
-            raise typer.Exit(interruption.exit_code) from None
     _print(tuned, output, datasets)
 
 
-def _opened(open_dataset: Any, spec: str, pairs: str | None, max_width: int | None) -> Any:
-    """A data set; `pairs` is for those that leave them open."""
-    from aerocues.datasets.catalog import takes_pairs
+def _opened(spec: str, pairs: str | None, max_width: int | None) -> Dataset:
+    """A dataset; `pairs` is for those that leave them open."""
+    from aerocues.datasets.catalog import open_dataset, takes_pairs
 
     return open_dataset(spec, pairs=pairs if takes_pairs(spec) else None, max_width=max_width)
 
 
-def _listener() -> Any:
-    from aerocues.tuning.tune import Listener
-
-    class Lines(Listener):
-        """A line a search."""
-
-        def begins(self, space: SearchSpace, number: int, total: int) -> None:
-            self._place = f"{number} of {total}"
-
-        def found(self, finding: Finding) -> None:
-            what = f"{setting_text(finding.best)}: {_gain(finding)}" if finding.best else "default"
-            told = f"; {finding.why_not}" if finding.why_not else ""
-            sys.stderr.write(f"{self._place}: {finding.space.name}: {what}{told}\n")
-            sys.stderr.flush()
-
-    return Lines()
-
-
-def setting_text(setting: Any) -> str:
-    """``bytes=32, use_orientation=False``."""
-    return ", ".join(f"{name}={value}" for name, value in setting.items()) or "default"
-
-
-def _gain(finding: Finding) -> str:
-    return f"{finding.gain:+.3f} ({finding.low:+.3f} to {finding.high:+.3f})"
-
-
 def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
-    from aerocues.cli.console import count, print_table, standard_output
+    from aerocues.cli.console import print_table, standard_output
+    from aerocues.phrases import count
 
     console = standard_output()
     training = sum(len(split.training) for split in tuned.splits)
@@ -179,7 +146,7 @@ def _print(tuned: Tuned, output: Path, datasets: list[str]) -> None:
 
 def _scenes_told(findings: list[Finding]) -> str:
     """What too few scenes to judge by mean for the intervals."""
-    from aerocues.cli.console import count
+    from aerocues.phrases import count
     from aerocues.tuning.search_objective import FEWEST_SCENES
 
     scenes = max((each.judged_by.scenes for each in findings if each.judged_by), default=0)
@@ -191,6 +158,7 @@ def _scenes_told(findings: list[Finding]) -> str:
 def table(findings: list[Finding]) -> Table:
     """A row a search."""
     from aerocues.cli.console import plain_table
+    from aerocues.tuning.search_progress import setting_text
 
     headings = ("gain", "at least", "inlier ratio", "inliers", "true precision")
     output = plain_table("searched", "best", "kept", *headings, numbers=len(headings))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from aerocues.cli.console import count, plain_table, print_table, standard_output
+from aerocues.cli.console import plain_table, print_table, standard_output
 from aerocues.cli.ranking_table import HEADINGS
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""Opens a dataset by its text form."""
+"""How datasets are opened: by their text form, by folder or by files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from aerocues.arguments import check_whole
 from aerocues.datasets.dataset import Dataset, Source
+from aerocues.datasets.folder import folder_of, open_files
 from aerocues.datasets.kinds import CATALOG, DatasetKind
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import PairsFile, parse_pairs
@@ -17,24 +19,28 @@ from aerocues.errors import DatasetError
 _KINDS = {kind.name: kind for kind in CATALOG}
 
 
+DatasetLike = Dataset | str | Path | Sequence[str | Path]
+"""What functions take as images: a dataset, its text form, a folder, or image files."""
+
+
 def open_dataset(
-    spec: str,
+    spec: str | Path | Sequence[str | Path],
     *,
     pairs: str | None = None,
     max_width: int | None = None,
     equalize: str = "none",
-    limit: int | None = None,
+    max_pairs: int | None = None,
     sequences: str | Sequence[str] | None = None,
     subset: str | None = None,
 ) -> Dataset:
-    """Open a dataset by its text form.
+    """Open images to measure on.
 
     Parameters
     ----------
-    spec : str
+    spec : str, path or sequence of paths
         ``synthetic[:IMAGE]``, ``synthetic-extended[:IMAGE]``, ``oxford:DIR``, ``hpatches:DIR``,
-        ``uav:DIR``, ``flight:DIR``, ``simulated:DIR``, ``airsim:DIR``, or the path of a plain
-        folder.
+        ``uav:DIR``, ``flight:DIR``, ``simulated:DIR``, ``airsim:DIR``, the path of a plain
+        folder, or two or more image files of one scene, in their order.
     pairs : str, optional
         ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m``,
         ``overlap:0.3-0.9`` or the path of a pairs file; only for kinds without pairs of their own.
@@ -43,8 +49,8 @@ def open_dataset(
         0 keeps the size.
     equalize : str
         ``none``, ``histogram`` or ``clahe``.
-    limit : int, optional
-        Keep only the first pairs.
+    max_pairs : int, optional
+        Keep only the first pairs, at most so many.
     sequences : str or sequence of str, optional
         Keep the sequences that match one of these names or globs, in any case; a text is split at
         commas.
@@ -60,31 +66,51 @@ def open_dataset(
 
     Raises
     ------
+    ArgumentError
+        If an option has an invalid value.
     DatasetError
-        If the kind is unknown, files are missing, or an option is invalid.
+        If the kind is unknown or files are missing.
     """
-    if limit is not None and limit < 1:
-        raise DatasetError(f"--limit {limit} leaves no pairs; give 1 or more")
-    kind, target = _parse(spec)
-    if pairs is not None and not kind.takes_pairs:
-        raise DatasetError(f"{kind.name} has pairs of its own; leave --pairs out")
-    if subset is not None and not kind.takes_pairs:
-        raise DatasetError(
-            f"{kind.name} has pairs of its own; use --sequences in place of --subset"
-        )
+    if max_pairs is not None:
+        check_whole("max_pairs", max_pairs, 1)
     max_width = max_width or None
-    dataset = kind.load(target, Options(pairs, max_width, equalize, subset))
+    options = Options(pairs, max_width, equalize, subset)
+    if isinstance(spec, str | Path):
+        kind, target = _parse(str(spec))
+        _check_pairs(kind, options)
+        opened, text = kind.load(target, options), _absolute(kind, target)
+    else:
+        files = [Path(file).expanduser().absolute() for file in spec]
+        folder = folder_of(files)
+        opened, text = open_files(folder, files, options), f"flight:{folder}"
     names = sequences if sequences is None or isinstance(sequences, str) else ",".join(sequences)
     source = Source(
-        spec=_absolute(kind, target),
+        spec=text,
         pairs=_absolute_pairs(pairs),
         max_width=max_width,
         equalize=equalize,
-        limit=limit,
+        max_pairs=max_pairs,
         sequences=names,
         subset=subset,
     )
-    return replace(_restricted(dataset, limit, sequences), source=source)
+    return replace(_restricted(opened, max_pairs, sequences), source=source)
+
+
+def as_dataset(dataset: DatasetLike) -> Dataset:
+    """A dataset as it is, or what `open_dataset` makes of the rest."""
+    return dataset if isinstance(dataset, Dataset) else open_dataset(dataset)
+
+
+def _check_pairs(kind: DatasetKind, options: Options) -> None:
+    """Raise DatasetError where a kind that has pairs of its own is to be paired otherwise."""
+    if kind.takes_pairs:
+        return
+    if options.pairs is not None:
+        raise DatasetError(f"{kind.name} has pairs of its own; leave `pairs` out")
+    if options.subset is not None:
+        raise DatasetError(
+            f"{kind.name} has pairs of its own; use `sequences` in place of `subset`"
+        )
 
 
 def takes_pairs(spec: str) -> bool:
@@ -126,7 +152,7 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
 
 
 def _restricted(
-    dataset: Dataset, limit: int | None, sequences: str | Sequence[str] | None
+    dataset: Dataset, max_pairs: int | None, sequences: str | Sequence[str] | None
 ) -> Dataset:
     kept = list(dataset.pairs)
     names = sequences.split(",") if isinstance(sequences, str) else sequences
@@ -135,7 +161,7 @@ def _restricted(
         if not kept:
             have = ", ".join(dict.fromkeys(pair.sequence for pair in dataset.pairs))
             raise DatasetError(f"no sequence is called {', '.join(globs)}; there are: {have}")
-    kept = kept[:limit]
+    kept = kept[:max_pairs]
     used = {name for pair in kept for name in (pair.image_1, pair.image_2)}
     images = [image for image in dataset.images if image.name in used]
     return replace(dataset, images=images, pairs=kept)

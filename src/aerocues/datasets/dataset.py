@@ -160,7 +160,7 @@ class Source:
     ----------
     spec : str
         Text form of the dataset, with an absolute path.
-    pairs, max_width, equalize, limit, sequences, subset
+    pairs, max_width, equalize, max_pairs, sequences, subset
         See `open_dataset`; the names of sequences as one text.
     """
 
@@ -168,7 +168,7 @@ class Source:
     pairs: str | None = None
     max_width: int | None = None
     equalize: str = "none"
-    limit: int | None = None
+    max_pairs: int | None = None
     sequences: str | None = None
     subset: str | None = None
 

@@ -147,7 +147,7 @@ class FileSource:
             raise ImageError(message + "cut it into tiles")
         widest = header.size[0] // fitting[0]
         if self.max_width is None or self.max_width > widest:
-            raise ImageError(message + f"give --max-width {widest} or less")
+            raise ImageError(message + f"give `max_width={widest}` or less")
         return fitting[0]
 
 

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import Any, Literal, get_args
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.arguments import check_choice
 from aerocues.datasets.dataset import Pixels
-from aerocues.errors import DatasetError
+from aerocues.errors import ArgumentError
 
 Equalization = Literal["none", "histogram", "clahe"]
 EQUALIZATIONS: tuple[str, ...] = get_args(Equalization)
 
+SMALLEST = 16
 _CLAHE_CLIP_LIMIT = 2.0
 _CLAHE_TILES = (8, 8)
 
 
 def check_settings(max_width: int | None, equalize: str) -> None:
-    """Raise DatasetError unless the size and the equalisation are valid."""
-    if max_width is not None and max_width < 16:
-        raise DatasetError(
-            f"--max-width {max_width} is too small; give 16 pixels or more, or 0 for all"
+    """Raise ArgumentError unless the size and the equalisation are valid."""
+    if max_width is not None and (not isinstance(max_width, Integral) or max_width < SMALLEST):
+        raise ArgumentError(
+            f"`max_width` must be {SMALLEST} pixels or more, or 0 for images as they are, got "
+            f"{max_width!r}"
         )
-    if equalize not in EQUALIZATIONS:
-        raise DatasetError(f"unknown equalisation '{equalize}'; use {', '.join(EQUALIZATIONS)}")
+    check_choice("equalize", equalize, EQUALIZATIONS)
 
 
 def fitted_size(size: tuple[int, int], max_width: int | None) -> tuple[int, int]:
@@ -68,11 +71,10 @@ def equalize_luminance(pixels: Pixels, how: str) -> Pixels:
 
 
 def _equalized(plane: NDArray[np.uint8], how: str) -> Any:
+    check_choice("equalize", how, EQUALIZATIONS)
     if how == "histogram":
         return cv2.equalizeHist(plane)
-    if how == "clahe":
-        return cv2.createCLAHE(_CLAHE_CLIP_LIMIT, _CLAHE_TILES).apply(plane)
-    raise DatasetError(f"unknown equalisation '{how}'; use {', '.join(EQUALIZATIONS)}")
+    return cv2.createCLAHE(_CLAHE_CLIP_LIMIT, _CLAHE_TILES).apply(plane)
 
 
 def scale_matrix(before: tuple[int, int], after: tuple[int, int]) -> NDArray[np.float64]:

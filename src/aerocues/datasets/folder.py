@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -68,7 +69,7 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
         folders = dict.fromkeys(name.rpartition("/")[0] or name for name in names)
         shown = ", ".join(list(folders)[:4]) + (", ..." if len(folders) > 4 else "")
         raise DatasetError(
-            f"no image of {root} is in --subset {options.subset}; there are: {shown}"
+            f'no image of {root} is in `subset="{options.subset}"`; there are: {shown}'
         )
     return [
         Image(
@@ -101,6 +102,29 @@ def open_folder(folder: Path, options: Options) -> Dataset:
 def open_flight(folder: Path, options: Options) -> Dataset:
     """The images of a flight: of a folder and all folders below it, sorted by name."""
     return _one_scene(folder, folder_images(folder, options, tree=True), options)
+
+
+def folder_of(files: Sequence[Path]) -> Path:
+    """The folder that holds all of some files, directly or below it.
+
+    Raises
+    ------
+    DatasetError
+        If there are fewer than two files, one of them is not there, or one is given twice.
+    """
+    if len(files) < 2:
+        raise DatasetError("two or more image files make a dataset; give more, or their folder")
+    for file in files:
+        if not file.is_file():
+            raise DatasetError(f"there is no file {file}; check the path")
+        if files.count(file) > 1:
+            raise DatasetError(f"{file} is given twice; give each image once")
+    return Path(os.path.commonpath([file.parent for file in files]))
+
+
+def open_files(folder: Path, files: Sequence[Path], options: Options) -> Dataset:
+    """The images of some files in a folder or below it, in their order."""
+    return _one_scene(folder, file_images(files, folder, options), options)
 
 
 def folder_images(folder: Path, options: Options, *, tree: bool = False) -> list[Image]:

@@ -136,7 +136,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="uav",
         form="uav:DIR",
-        pairs="consecutive images of each project; others with --pairs",
+        pairs="as chosen; consecutive images of each project by default",
         ground_truth="none",
         needs="a folder of projects with two or more images each",
         layout="DIR/project/1.jpg, 2.jpg",
@@ -149,7 +149,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="flight",
         form="flight:DIR",
-        pairs="consecutive by name; others with --pairs",
+        pairs="as chosen; consecutive by name by default",
         ground_truth="GPS positions from EXIF, if present",
         needs="the images of one flight, in a folder or a tree of folders",
         layout="DIR/**/*.jpg",
@@ -162,7 +162,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="simulated",
         form="simulated:DIR",
-        pairs="consecutive by name in each folder; others with --pairs",
+        pairs="as chosen; consecutive by name in each folder by default",
         ground_truth="exact poses, intrinsics and depth",
         needs="a flight made by aerocues simulate",
         layout="DIR/**/*.png (.jpg), DIR/truth/poses.csv, camera.json, depth/**/*.npy",
@@ -175,7 +175,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="airsim",
         form="airsim:DIR",
-        pairs="consecutive by name in each folder; others with --pairs",
+        pairs="as chosen; consecutive by name in each folder by default",
         ground_truth="exact poses, intrinsics and depth",
         needs="a flight made by aerocues airsim collect",
         layout="as a simulated flight",
@@ -188,7 +188,7 @@ CATALOG: tuple[DatasetKind, ...] = (
     DatasetKind(
         name="folder",
         form="DIR",
-        pairs="consecutive by name; others with --pairs",
+        pairs="as chosen; consecutive by name by default",
         ground_truth="none; GPS positions from EXIF, if present",
         needs="any folder with two or more images",
         layout="DIR/*.jpg (.png, .tif, .bmp, .webp, .ppm, .pgm)",

@@ -70,7 +70,8 @@ class _Sampled:
 def _sampled(image: Image) -> _Sampled:
     if image.truth is None or image.truth.depth is None:
         raise DatasetError(
-            f"{image.name} has no true depth to tell overlap by; use --pairs consecutive or gps"
+            f"{image.name} has no true depth to tell overlap by; use "
+            '`pairs="consecutive"` or `pairs="gps"`'
         )
     located = Located.of(image.truth)
     camera = image.truth.camera

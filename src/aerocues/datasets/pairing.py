@@ -100,7 +100,7 @@ def _horizontal_positions(images: Sequence[Image]) -> NDArray[np.float64]:
     if missing:
         raise DatasetError(
             f"{len(missing)} of {len(images)} images have no GPS position "
-            f"({_listed(missing)}); use --pairs consecutive or exhaustive"
+            f'({_listed(missing)}); use `pairs="consecutive"` or `pairs="exhaustive"`'
         )
     return east_north_up([image.gps for image in images if image.gps is not None])[:, :2]
 
@@ -188,7 +188,7 @@ def _overlapping(limits: str) -> PairStrategy:
     least, _, most = limits.partition("-")
     low, high = float(least), float(most or 1.0)
     if not 0.0 < low <= high <= 1.0:
-        raise DatasetError(f"--pairs overlap:{limits}: give shares of an image such as 0.3-0.9")
+        raise DatasetError(f'`pairs="overlap:{limits}"`: give shares of an image such as 0.3-0.9')
     return Overlapping(low, high)
 
 
@@ -217,4 +217,4 @@ def parse_pairs(text: str) -> PairStrategy:
     path = Path(text).expanduser()
     if path.is_file():
         return PairsFile(path.absolute())
-    raise DatasetError(f"--pairs {text} is neither a way to pair nor a file; use {FORMS}")
+    raise DatasetError(f'`pairs="{text}"` is neither a way to pair nor a file; use {FORMS}')

@@ -106,7 +106,7 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
     pairs = [pair for view in views for pair in strategy.pairs(view)]
     if not pairs:
         raise DatasetError(
-            f"{folder} holds one image a view; use --pairs exhaustive or overlap:0.3"
+            f'{folder} holds one image a view; use `pairs="exhaustive"` or `pairs="overlap:0.3"`'
         )
     return scene_of(folder, images, pairs, options.settings(pairs=text))
 
@@ -124,7 +124,7 @@ def _root(folder: Path) -> Path:
             return parent
     raise DatasetError(
         f"neither {folder} nor a folder above it has {_TRUTH}/poses.csv; "
-        f"make a flight with: aerocues simulate -o {folder}"
+        "make a flight with `aerocues.simulate`"
     )
 
 

@@ -10,11 +10,14 @@ from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from aerocues.arguments import seconds_of
+from aerocues.defaults import CALL_TIMEOUT
 from aerocues.errors import EngineError
 from aerocues.evaluation.dask_losses import DaskLosses, call_of
-from aerocues.evaluation.engine import Activity, Finished, Watch
-from aerocues.evaluation.run import DEFAULT_TIMEOUT
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
+from aerocues.processes.limits import memory_mb
+from aerocues.progress import Activity, Watch
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -42,24 +45,37 @@ class DaskEngine:
     client : distributed.Client
         From `dask_scheduler.connected`, or from any cluster that Dask supports, such as
         ``dask_jobqueue.SLURMCluster``.
-    timeout : float
-        Limit of the CPU seconds of one stage call, and of the wall seconds that it may be idle.
-    memory_limit_mb : int or None
-        Memory of the process that measures a unit; by default 80 % of the memory per thread of the
-        Dask worker.
+    timeout : float or str
+        CPU time that one call of a method may use, and wall time for which it may sit idle:
+        seconds, or a text such as ``"5min"``.
+    memory_limit : float or None
+        Gigabytes of the process that measures a unit; by default 80 % of what a thread of the
+        Dask worker has.
     resource : str or None
         Only workers that were started with this resource (``dask worker --resources NAME=1``)
         get units, to choose one kind of machine.
     longest_seconds : float
-        After this time a worker finishes the current pair and sends the rows; the rest of the unit
-        goes to any free worker.
+        A worker sends the rows of a unit after so long, or when the pair that it is at is
+        finished; the rest of the unit goes to whichever worker is free.
+
+    Raises
+    ------
+    ArgumentError
+        If a limit makes no sense.
     """
 
     client: Client
-    timeout: float = DEFAULT_TIMEOUT
-    memory_limit_mb: int | None = None
+    timeout: float | str = CALL_TIMEOUT
+    memory_limit: float | None = None
     resource: str | None = None
     longest_seconds: float = LONGEST_SECONDS
+
+    def __post_init__(self) -> None:
+        self._limits()
+
+    def _limits(self) -> tuple[float, int | None]:
+        """Seconds and megabytes."""
+        return seconds_of("timeout", self.timeout), memory_mb(self.memory_limit)
 
     @property
     def threads(self) -> int:
@@ -99,9 +115,7 @@ class DaskEngine:
         from aerocues.evaluation.dask_worker import UnitMeasurer
 
         name = f"aerocues-{uuid.uuid4().hex[:12]}"
-        measurer = UnitMeasurer(
-            name, context, self.timeout, self.memory_limit_mb, self.longest_seconds
-        )
+        measurer = UnitMeasurer(name, context, *self._limits(), self.longest_seconds)
         dispatch = _Dispatch(self, name, context, units)
         try:
             self._prepare_workers(measurer)

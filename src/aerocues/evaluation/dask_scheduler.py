@@ -30,7 +30,7 @@ def connected(scheduler: str) -> Iterator[Client]:
         from distributed import Client
     except ImportError as error:
         raise EngineError(
-            f"--engine dask needs a package that is not installed ({error}); "
+            f"a Dask cluster needs a package that is not installed ({error}); "
             "pip install 'aerocues[dask]'"
         ) from error
     try:
@@ -39,7 +39,7 @@ def connected(scheduler: str) -> Iterator[Client]:
     except (OSError, ValueError) as error:
         raise EngineError(
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
-            "the address that it prints, such as --scheduler tcp://HOST:8786"
+            'the address that it prints, such as `scheduler="tcp://HOST:8786"`'
         ) from error
     with client, _quiet():
         yield client

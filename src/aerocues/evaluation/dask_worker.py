@@ -20,9 +20,10 @@ import psutil
 from distributed import Worker, WorkerPlugin, get_worker
 
 from aerocues.errors import EngineError, ImageError
-from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.worker_pool import WorkerPool
+from aerocues.progress import Activity, Watch
 from aerocues.results.versions import machine_name, software_versions
 
 # Software that affects rows: rows are identified by the versions of the run, so that other versions

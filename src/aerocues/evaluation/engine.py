@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 from aerocues.evaluation.unit import Context, Unit
-from aerocues.processes.call import StageCall
+from aerocues.progress import Watch
 from aerocues.results.metrics import Row
 
 
@@ -17,19 +17,6 @@ class Finished:
 
     unit: Unit
     rows: list[Row]
-
-
-@dataclass(frozen=True)
-class Activity:
-    """The activity of one worker and its seconds; or what a run without workers waits for."""
-
-    worker: int
-    call: StageCall | None
-    seconds: float
-    waiting_for: str = ""
-
-
-Watch = Callable[[Sequence[Activity]], None]
 
 
 class Engine(Protocol):

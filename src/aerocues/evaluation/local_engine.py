@@ -6,9 +6,10 @@ import contextlib
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 
-from aerocues.evaluation.engine import Engine, Finished, Watch
+from aerocues.evaluation.engine import Engine, Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.worker_pool import WorkerPool
+from aerocues.progress import Watch
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from aerocues.datasets.dataset import Pair
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.results.timing import Timing
 
-TIMED_PAIRS = 5
 ALL_PAIRS = 0
 
 

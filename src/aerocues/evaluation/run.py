@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 import contextlib
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aerocues.datasets.catalog import open_dataset
+from aerocues.arguments import check_choice, check_whole, seconds_of
+from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import SelectionError
+from aerocues.defaults import CALL_TIMEOUT, TIMED_PAIRS
+from aerocues.errors import ArgumentError
 from aerocues.evaluation.context import make_context, run_facts
-from aerocues.evaluation.engine import Activity, Engine, Finished
-from aerocues.evaluation.passes import TIMED_PAIRS, Pass, passes, timed_alone
+from aerocues.evaluation.engine import Engine, Finished
+from aerocues.evaluation.passes import Pass, passes, timed_alone
 from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.planned_rows import planned_table
+from aerocues.evaluation.run_progress import RunProgress
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
-from aerocues.methods.selection import select
-from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.methods.selection import Patterns, select
+from aerocues.methods.strongest import KeypointLimit, keypoint_limit
+from aerocues.processes.limits import memory_mb, share_of_memory, worker_count
+from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.measured_results import Results
 from aerocues.results.store import RUN, Store
-from aerocues.results.timing import Timing
+from aerocues.results.timing import TIMINGS, Timing
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -34,108 +39,49 @@ if TYPE_CHECKING:
 
     from aerocues.evaluation.local_engine import LocalEngine
 
-DEFAULT_TIMEOUT = 600.0
 
-
-class Observer:
-    """Told how a run goes on; the base says nothing. Displays override what they show."""
-
-    def hashing(self, done: int, total: int) -> None:
-        """`done` of `total` images have been read to tell whether they changed."""
-
-    def set_aside(self, rows: int) -> None:
-        """So many rows in the folder, of other settings, count no longer."""
-
-    def planned(self, plan: Plan, timing: Timing) -> None:
-        """The work of a pass, which is timed in this way, has been divided into units."""
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        """What the workers are doing, several times a second."""
-
-    def finished(self, finished: Finished) -> None:
-        """A unit is finished and stored."""
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Limits of workers; None means a default for this machine.
-
-    Parameters
-    ----------
-    workers : int or None
-        Number of processes; by default the number of cores. Exclusive timing uses one.
-    timeout : float
-        Limit of the CPU seconds of one stage call, and of the wall seconds that it may be idle.
-    memory_limit_mb : int or None
-        Memory of one worker; by default 80 % of the memory of the machine, divided by the number of
-        workers.
-    """
-
-    workers: int | None = None
-    timeout: float = DEFAULT_TIMEOUT
-    memory_limit_mb: int | None = None
-
-
-def usable_cores() -> int:
-    """Number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def local_engine(limits: Limits, timing: Timing) -> LocalEngine:
-    """The engine for this machine.
+def local_engine(
+    timing: Timing,
+    workers: int | None = None,
+    timeout: float | str = CALL_TIMEOUT,
+    memory_limit: float | None = None,
+) -> LocalEngine:
+    """The engine for this machine; see `run` for the parameters.
 
     Raises
     ------
-    SelectionError
-        If a limit is not positive.
+    ArgumentError
+        If a limit makes no sense.
     """
-    import psutil
-
     from aerocues.evaluation.local_engine import LocalEngine
 
-    workers = limits.workers or usable_cores()
-    if workers < 1 or limits.timeout <= 0:
-        raise SelectionError("--workers and --timeout must be positive; leave them out to choose")
-    workers = 1 if timing == "exclusive" else workers
-    memory = limits.memory_limit_mb or int(0.8 * psutil.virtual_memory().total / 2**20 / workers)
-    return LocalEngine(workers, limits.timeout, memory)
-
-
-def _select(
-    context: Context,
-    combinations: str | Iterable[str | Combination] | None,
-    kept: Mapping[str, str | Iterable[str] | None],
-    *,
-    everything: bool,
-) -> list[Combination]:
-    patterns: str | list[str] | None
-    if combinations is None or isinstance(combinations, str):
-        patterns = combinations
-    else:
-        patterns = [str(combination) for combination in combinations]
-    return select(context.methods, patterns, **kept, everything=everything)
+    processes = worker_count(workers)
+    processes = 1 if timing == "exclusive" else processes
+    memory = memory_mb(memory_limit) or share_of_memory(processes)
+    return LocalEngine(processes, seconds_of("timeout", timeout), memory)
 
 
 def run(
-    dataset: Dataset | str,
-    combinations: str | Iterable[str | Combination] | None = None,
+    dataset: DatasetLike,
+    combinations: Patterns | None = None,
     output: str | Path = "results",
     *,
     detectors: str | Iterable[str] | None = None,
     descriptors: str | Iterable[str] | None = None,
     everything: bool = False,
     preset: str | Preset = "default",
+    max_keypoints: int = 0,
+    spread: bool = False,
     seed: int = 0,
     timing: Timing = "exclusive",
-    timed_pairs: int = TIMED_PAIRS,
-    limit: KeypointLimit = ALL_KEYPOINTS,
-    limits: Limits | None = None,
+    timing_pairs: int | None = None,
+    workers: int | None = None,
+    timeout: float | str = CALL_TIMEOUT,
+    memory_limit: float | None = None,
     features: str | Path | None = None,
     retry_failed: bool = False,
-    observer: Observer | None = None,
     engine: Engine | None = None,
+    progress: Progress | None = None,
 ) -> Results:
     """Measure combinations on the pairs of a dataset.
 
@@ -144,38 +90,48 @@ def run(
 
     Parameters
     ----------
-    dataset : Dataset or str
-        From `aerocues.open_dataset`, or the text for it.
-    combinations : str or iterable, optional
+    dataset : Dataset, str, path or sequence of paths
+        From `aerocues.open_dataset`, or what that would be given.
+    combinations : str, Combination or iterable of both, optional
         Globs such as ``"ORB-*-HAM-BF,AKAZE-SIFT-*"`` or combinations; all meaningful ones by
         default.
     output : path
-        Results folder; it is created if it does not exist.
-    detectors, descriptors, everything
-        Restrict or widen the selection of combinations; see `aerocues.methods.selection.select`.
+        Results folder, made where it is missing.
+    detectors, descriptors : str or iterable of str, optional
+        Names or globs of the detectors and descriptors to keep.
+    everything : bool
+        Take all combinations that can run, not only the meaningful ones.
     preset : str or Preset
-        Preset of parameters and protocol, or the file of one; see `aerocues.methods.presets`.
+        Preset of parameters and protocol, or the file of one.
+    max_keypoints : int
+        The strongest keypoints that are kept in an image; 0 keeps all.
+    spread : bool
+        Keep the strongest of each part of the image, in place of the strongest of all.
     seed : int
         Set before every stage call.
     timing : {"exclusive", "shared", "estimated"}
-        ``exclusive`` measures some pairs again to time them on a core of their own. ``shared``
-        keeps the times of workers that run side by side. ``estimated`` does too, and times brute
-        force on a sample of the descriptors. Quality does not depend on it.
-    timed_pairs : int
-        Number of pairs with exclusive timing, a seeded sample; 0 for all. They scale the times of
-        the other pairs.
-    limit : KeypointLimit
-        Maximum number of keypoints per image; all by default.
-    limits : Limits, optional
-        Workers, time and memory.
+        Whether some pairs are timed by themselves once more, or times are those of workers beside
+        each other, of brute force on a part of the descriptors where they are estimated. Quality
+        does not depend on it.
+    timing_pairs : int, optional
+        How many pairs exclusive timing takes, a seeded sample; 5 by default, 0 for all. The times
+        of the other pairs are scaled by what they show.
+    workers : int, optional
+        Processes at a time; as many as there are cores by default. Exclusive timing takes one.
+    timeout : float or str
+        CPU time of one call of a method, and the wall time that it may sit idle: seconds, or a
+        text such as ``"5min"``.
+    memory_limit : float, optional
+        Gigabytes of one worker; by default 80 % of the machine's divided by the workers.
     features : path, optional
         Folder in which features are stored and reused by other runs.
     retry_failed : bool
-        Measure rows again that crashed, raised an error, or exceeded the limits of time or memory.
-    observer : Observer, optional
-        Receives the progress.
+        Measure again what crashed, raised an error, ran out of time or memory.
     engine : Engine, optional
-        Runs the units of all passes; by default worker processes on this machine.
+        Where units of all passes run, such as `aerocues.DaskEngine`; by default worker processes
+        on this machine. It has limits of its own.
+    progress : callable, optional
+        Called with each `aerocues.Event`.
 
     Returns
     -------
@@ -184,38 +140,94 @@ def run(
     Raises
     ------
     AerocuesError
-        If the selection, the images or the results folder are invalid.
+        If an argument, the selection, the images or the results folder do not allow a run. A
+        method that fails does not raise: its rows have a status and a message.
     """
-    if isinstance(dataset, str):
-        dataset = open_dataset(dataset)
-    observer = observer or Observer()
-    parts = as_preset(preset)
-    context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
+    asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
+    engines = _engines(asked, engine, workers, timeout, memory_limit)
+    opened = as_dataset(dataset)
+    context = asked.context(opened)
     if features is not None:
         from aerocues.pipeline.feature_folder import checked_folder
 
         context = replace(context, features=checked_folder(Path(features).absolute()))
     kept = {"detectors": detectors, "descriptors": descriptors}
-    chosen = _select(context, combinations, kept, everything=everything)
-    turns = passes(dataset.pairs, timing, timed_pairs, seed)
-    engines = [engine or local_engine(limits or Limits(), turn.timing) for turn in turns]
+    chosen = select(context.methods, combinations, **kept, everything=everything)
+    turns, told = asked.passes(opened), RunProgress(progress)
     store = Store.create(Path(output))
     with store.writing():
-        for number, (turn, runner) in enumerate(zip(turns, engines, strict=True)):
+        for number, turn in enumerate(turns):
             own = context.timed(turn.timing)
-            plan = _plan(own, chosen, turn, store, observer.hashing, retry_failed=retry_failed)
+            plan = _plan(own, chosen, turn, store, told.read, retry_failed=retry_failed)
             if number == 0:
-                facts = run_facts(context, parts, plan, chosen)
-                timed = timed_alone(turns, dataset.pairs)
-                read = content_hash([dataset.geometry, dataset.settings])
-                _record(store, planned_table(context, read, plan.rows, timed), facts, observer)
-            observer.planned(plan, turn.timing)
-            _measure(runner.run(plan.units, own, observer.working), store, observer)
+                facts = run_facts(context, asked.parts, plan, chosen)
+                timed = timed_alone(turns, opened.pairs)
+                read = content_hash([opened.geometry, opened.settings])
+                _record(store, planned_table(context, read, plan.rows, timed), facts, told)
+            told.planned(plan, turn.timing)
+            _measure(engines(turn.timing).run(plan.units, own, told.watch), store, told)
     return Results(store.folder)
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What decides the rows of a run and their times besides images and combinations."""
+
+    preset: str | Preset
+    seed: int
+    timing: Timing
+    timing_pairs: int | None
+    limit: KeypointLimit
+
+    def __post_init__(self) -> None:
+        check_choice("timing", self.timing, TIMINGS)
+        check_whole("seed", self.seed, 0)
+        if self.timing_pairs is None:
+            return
+        check_whole("timing_pairs", self.timing_pairs, 0)
+        if self.timing != "exclusive":
+            raise ArgumentError(
+                "`timing_pairs` is for pairs that are timed alone, and "
+                f'`timing="{self.timing}"` times none so; leave one of the two out'
+            )
+
+    @cached_property
+    def parts(self) -> Preset:
+        """The preset."""
+        return as_preset(self.preset)
+
+    def context(self, dataset: Dataset) -> Context:
+        """What all units share."""
+        return make_context(
+            dataset, self.parts, seed=self.seed, timing=self.timing, limit=self.limit
+        )
+
+    def passes(self, dataset: Dataset) -> tuple[Pass, ...]:
+        """The passes over the pairs."""
+        timed = TIMED_PAIRS if self.timing_pairs is None else self.timing_pairs
+        return passes(dataset.pairs, self.timing, timed, self.seed)
+
+
+def _engines(
+    asked: _Asked,
+    engine: Engine | None,
+    workers: int | None,
+    timeout: float | str,
+    memory_limit: float | None,
+) -> Callable[[Timing], Engine]:
+    """The engine of each pass; limits are looked at before anything is done."""
+    if engine is None:
+        local_engine(asked.timing, workers, timeout, memory_limit)
+        return lambda timing: local_engine(timing, workers, timeout, memory_limit)
+    if workers is not None:
+        raise ArgumentError(
+            "`workers` is for processes on this machine; leave it out where an `engine` is given"
+        )
+    return lambda timing: engine
+
+
 def _record(
-    store: Store, planned: pl.DataFrame, facts: Mapping[str, object], observer: Observer
+    store: Store, planned: pl.DataFrame, facts: Mapping[str, object], told: RunProgress
 ) -> None:
     """Store the plan; report rows that are no longer part of it."""
     before = store.planned_keys()
@@ -223,7 +235,7 @@ def _record(
     store.write_run(facts)
     aside = store.measured(before - store.planned_keys())
     if aside:
-        observer.set_aside(len(aside))
+        told.set_aside(len(aside))
 
 
 def _plan(
@@ -244,37 +256,37 @@ def _plan(
 
 def plan_run(
     dataset: Dataset,
-    combinations: str | Iterable[str | Combination] | None = None,
+    combinations: Patterns | None = None,
     output: str | Path = "results",
     *,
     detectors: str | Iterable[str] | None = None,
     descriptors: str | Iterable[str] | None = None,
     everything: bool = False,
     preset: str | Preset = "default",
+    max_keypoints: int = 0,
+    spread: bool = False,
     seed: int = 0,
     timing: Timing = "exclusive",
-    timed_pairs: int = TIMED_PAIRS,
-    limit: KeypointLimit = ALL_KEYPOINTS,
+    timing_pairs: int | None = None,
     retry_failed: bool = False,
-    observer: Observer | None = None,
 ) -> list[tuple[Timing, Plan]]:
-    """The plans of `run` for the same arguments, pass by pass. Nothing is measured or written."""
-    parts = as_preset(preset)
-    context = make_context(dataset, parts, seed=seed, timing=timing, limit=limit)
+    """What `run` would do with the same arguments, pass by pass; nothing is measured or written."""
+    asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
+    context = asked.context(dataset)
     kept = {"detectors": detectors, "descriptors": descriptors}
-    chosen = _select(context, combinations, kept, everything=everything)
+    chosen = select(context.methods, combinations, **kept, everything=everything)
     store = Store.open(Path(output)) if (Path(output) / RUN).is_file() else None
-    hashing = (observer or Observer()).hashing
+    silent = RunProgress(None).read
     return [
-        (turn.timing, _plan(context, chosen, turn, store, hashing, retry_failed=retry_failed))
-        for turn in passes(dataset.pairs, timing, timed_pairs, seed)
+        (turn.timing, _plan(context, chosen, turn, store, silent, retry_failed=retry_failed))
+        for turn in asked.passes(dataset)
     ]
 
 
 def _measure(
-    finished_units: Generator[Finished, None, None], store: Store, observer: Observer
+    finished_units: Generator[Finished, None, None], store: Store, told: RunProgress
 ) -> None:
     with contextlib.closing(finished_units):  # an interruption ends the workers immediately
         for finished in finished_units:
             store.write_finished(finished.unit.detector, finished.rows)
-            observer.finished(finished)
+            told.finished(finished)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator, Sequence
 from multiprocessing.connection import wait
 
-from aerocues.evaluation.engine import Activity, Finished, Watch
+from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.giving_up import settle_loss
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.unit_queue import UnitQueue
 from aerocues.evaluation.worker_process import WorkerProcess
 from aerocues.processes.child_process import Loss
+from aerocues.progress import Activity, Watch
 from aerocues.results.metrics import Row
 
 POLL_SECONDS = 0.2

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 
-from aerocues.evaluation.engine import Activity
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.processes.child_process import ChildProcess, Loss
+from aerocues.progress import Activity
 from aerocues.results.metrics import Row
 
 

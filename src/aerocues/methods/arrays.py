@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -57,6 +59,28 @@ class Keypoints:
             octave=np.zeros(count, np.int32),
             class_id=np.full(count, -1, np.int32),
         )
+
+    @classmethod
+    def from_opencv(cls, native: Sequence[Any]) -> Keypoints:
+        """Keypoints from a sequence of ``cv2.KeyPoint``, in the same order."""
+        rows = (
+            (*point.pt, point.size, point.angle, point.response, point.octave, point.class_id)
+            for point in native
+        )
+        # Doubles hold every float32 and int32 exactly.
+        values = np.fromiter(chain.from_iterable(rows), np.float64, 7 * len(native)).reshape(-1, 7)
+        size, angle, response = values[:, 2:5].T.astype(np.float32)
+        octave, class_id = values[:, 5:].T.astype(np.int32)
+        xy = np.ascontiguousarray(values[:, :2], np.float32)
+        return cls(xy, size, angle, response, octave, class_id)
+
+    def to_opencv(self) -> list[Any]:
+        """The keypoints as a list of ``cv2.KeyPoint``, in the same order."""
+        import cv2
+
+        columns = (*self.xy.T, self.size, self.angle, self.response, self.octave, self.class_id)
+        values = zip(*(column.tolist() for column in columns), strict=True)
+        return [cv2.KeyPoint(*each) for each in values]
 
     def take(self, which: NDArray[np.bool_] | NDArray[np.integer[Any]]) -> Keypoints:
         """The keypoints selected by a mask or by indices, in that order."""

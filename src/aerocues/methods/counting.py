@@ -13,7 +13,7 @@ from aerocues.methods.registry import Methods
 from aerocues.methods.selection import split_names, takes
 
 UNAVAILABLE = "a method is unavailable here"
-MEANINGLESS = "runs but means nothing: L2 norm on strings of bits (--all runs it)"
+MEANINGLESS = "runs but means nothing: L2 norm on strings of bits"
 
 
 @dataclass(frozen=True)

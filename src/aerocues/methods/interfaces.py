@@ -1,9 +1,10 @@
 """What a third-party method implements: arrays in, arrays out.
 
-A package offers a method through an entry point in one of the groups ``aerocues.detectors``,
-``aerocues.descriptors``, ``aerocues.extractors`` (detector and descriptor in one) and
-``aerocues.matchers``. The entry point's name, in upper case, is the method's name; its object is
-called with the method's parameters (none by default) and returns an object of the kind below.
+A program adds a method with `aerocues.register`. A package offers one through an entry point in
+one of the groups ``aerocues.detectors``, ``aerocues.descriptors``, ``aerocues.extractors``
+(detector and descriptor in one) and ``aerocues.matchers``. The entry point's name, in upper case,
+is the method's name; its object is called with the method's parameters (none by default) and
+returns an object of the kind below.
 """
 
 from __future__ import annotations

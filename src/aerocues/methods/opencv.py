@@ -24,38 +24,6 @@ from aerocues.methods.parameters import Value, create_opencv
 SEARCH_PARAMETERS = ("checks", "eps", "sorted", "explore_all_trees")
 
 
-def to_opencv(keypoints: Keypoints) -> list[Any]:
-    """Keypoints as a list of ``cv2.KeyPoint``, in the same order."""
-    return [
-        cv2.KeyPoint(*values)
-        for values in zip(
-            keypoints.xy[:, 0].tolist(),
-            keypoints.xy[:, 1].tolist(),
-            keypoints.size.tolist(),
-            keypoints.angle.tolist(),
-            keypoints.response.tolist(),
-            keypoints.octave.tolist(),
-            keypoints.class_id.tolist(),
-            strict=True,
-        )
-    ]
-
-
-def from_opencv(native: Sequence[Any]) -> Keypoints:
-    """Keypoints from a sequence of ``cv2.KeyPoint``, in the same order."""
-    rows = (
-        (*point.pt, point.size, point.angle, point.response, point.octave, point.class_id)
-        for point in native
-    )
-    # Doubles hold every float32 and int32 exactly.
-    values = np.fromiter(chain.from_iterable(rows), np.float64, 7 * len(native)).reshape(-1, 7)
-    size, angle, response = values[:, 2:5].T.astype(np.float32)
-    octave, class_id = values[:, 5:].T.astype(np.int32)
-    return Keypoints(
-        np.ascontiguousarray(values[:, :2], np.float32), size, angle, response, octave, class_id
-    )
-
-
 class OpenCVDetector:
     """A detector of OpenCV."""
 
@@ -66,7 +34,7 @@ class OpenCVDetector:
         return self._native.detect(image)
 
     def read(self, raw: Any) -> Keypoints:
-        return from_opencv(raw)
+        return Keypoints.from_opencv(raw)
 
 
 class OpenCVDescriptor:
@@ -78,7 +46,7 @@ class OpenCVDescriptor:
         self._columns = row.columns
 
     def prepare(self, keypoints: Keypoints) -> Any:
-        return to_opencv(keypoints)
+        return keypoints.to_opencv()
 
     def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
         return self._native.compute(image, prepared)
@@ -90,8 +58,8 @@ class OpenCVDescriptor:
         """
         native, descriptors = raw
         if descriptors is None or not len(native):
-            return Features(from_opencv(()), np.empty((0, self._columns), self._dtype))
-        return finite_features(from_opencv(native), descriptors)
+            return Features(Keypoints.from_opencv(()), np.empty((0, self._columns), self._dtype))
+        return finite_features(Keypoints.from_opencv(native), descriptors)
 
 
 class BruteForceMatcher:

@@ -1,12 +1,16 @@
-"""Methods that other packages bring, found through entry points."""
+"""Methods that other packages bring through entry points, and those that a program registers."""
 
 from __future__ import annotations
 
+import hashlib
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from typing import Any
 
+from aerocues.errors import MethodUnavailableError, SelectionError
 from aerocues.methods.combination import METHOD_NAME
 from aerocues.methods.declarations import Declaration, read_declaration
 from aerocues.methods.descriptors import DescriptorRow
@@ -23,6 +27,17 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """The kinds of method that a plug-in of each group of entry points is."""
 
 
+Known = Mapping[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]]
+"""Rows by kind and name."""
+SAYS_KIND = {
+    "extract": "extractor",
+    "describe": "descriptor",
+    "detect": "detector",
+    "match": "matcher",
+}
+"""Kinds of method by the function that a class of that kind has."""
+
+
 def load_factory(reference: str) -> Any:
     """The object that an entry point ``module:attribute`` names."""
     return EntryPoint(name="", value=reference, group="").load()
@@ -30,7 +45,7 @@ def load_factory(reference: str) -> Any:
 
 @dataclass(frozen=True)
 class _PlugIn:
-    """An entry point, the name of its method and the distribution that brings it."""
+    """An entry point, the name of its method and who brings it."""
 
     name: str
     origin: str
@@ -38,11 +53,97 @@ class _PlugIn:
     entry: EntryPoint
 
 
+_REGISTERED: dict[str, _PlugIn] = {}
+"""What this program has registered, by group and name."""
+
+
+def register(kind: str, name: str, method: str | type) -> None:
+    """Add a method of your own to those that combinations are made of.
+
+    It is measured like all others, in worker processes, too, which import it by its name. A method
+    that was registered under the same name is replaced. Where the source of its module changes, it
+    is another method: nothing that was measured before is taken for it.
+
+    Parameters
+    ----------
+    kind : {"detector", "descriptor", "extractor", "matcher"}
+        An extractor is a detector and a descriptor in one.
+    name : str
+        How combinations name it: letters, digits and underscores, in any case.
+    method : str or type
+        Its class, as ``"module:Class"``, or itself, if a module has it; see
+        `aerocues.methods.interfaces` for what it implements.
+
+    Raises
+    ------
+    SelectionError
+        If there is no such kind, or the name is malformed or that of another method.
+    MethodUnavailableError
+        If the class cannot be imported, or what it states is of another form.
+    """
+    if f"{kind}s" not in KINDS:
+        raise SelectionError(f"`kind` must be one of {', '.join(SAYS_KIND.values())}, got {kind!r}")
+    value = method if isinstance(method, str) else f"{method.__module__}:{method.__qualname__}"
+    if value.startswith("__main__:"):
+        raise MethodUnavailableError(
+            f"worker processes cannot import {value}; write the class into a file, such as "
+            f"mymodule.py, and register mymodule:{value.partition(':')[2]}"
+        )
+    entry = EntryPoint(name=name, value=value, group=f"aerocues.{kind}s")
+    _REGISTERED.pop(f"{kind}s {name.upper()}", None)
+    plug_in = _PlugIn(name.upper(), value, f"{kind}s", entry)
+    methods = installed_methods()
+    known: Known = {
+        "detector": methods.detectors,
+        "descriptor": methods.descriptors,
+        "matcher": methods.every_matcher,
+    }
+    if reason := _why_unfit(plug_in, known):
+        raise SelectionError(f"cannot register the {kind} {name}: {reason}; choose another name")
+    if problem := read_declaration(entry, plug_in.group).problem:
+        raise MethodUnavailableError(f"{value} cannot be used as {kind} {name.upper()}: {problem}")
+    origin = f"{value} {_source_hash(entry.module)}".strip()
+    _REGISTERED[f"{kind}s {plug_in.name}"] = replace(plug_in, origin=origin)
+
+
+def register_class(reference: str) -> None:
+    """Register ``module:Class`` under its ``name``, or that of the class, as what it implements.
+
+    Raises
+    ------
+    SelectionError, MethodUnavailableError
+        See `register`; also if the class implements no kind of method.
+    """
+    try:
+        found = load_factory(reference)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise MethodUnavailableError(
+            f"cannot import {reference!r}: {error}; write it as module:Class, of a module in this "
+            "folder or an installed one"
+        ) from error
+    kind = next((kind for function, kind in SAYS_KIND.items() if hasattr(found, function)), None)
+    if kind is None:
+        functions = ", ".join(SAYS_KIND)
+        raise MethodUnavailableError(
+            f"{reference} is not a method: it has none of the functions {functions}"
+        )
+    register(kind, getattr(found, "name", found.__name__), reference)
+
+
+def _source_hash(module: str) -> str:
+    """The beginning of the hash of a module's file; empty where there is none."""
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if file is None:
+        return ""
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:8]
+
+
 def _plug_ins() -> Iterator[_PlugIn]:
     for group in KINDS:
         for entry in sorted(entry_points(group=f"aerocues.{group}"), key=lambda entry: entry.name):
             origin = f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
             yield _PlugIn(entry.name.upper(), origin, group, entry)
+    yield from _REGISTERED.values()
 
 
 def _detector(plug_in: _PlugIn, declared: Declaration) -> DetectorRow:
@@ -82,26 +183,18 @@ def _matcher(plug_in: _PlugIn, declared: Declaration) -> MatcherRow:
     )
 
 
-def _why_left_out(
-    plug_in: _PlugIn, known: Mapping[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]]
-) -> str | None:
+def _why_unfit(plug_in: _PlugIn, known: Known) -> str | None:
     """Why the name of a plug-in cannot stand in a combination, or None if it can."""
     if not METHOD_NAME.fullmatch(plug_in.name):
-        return (
-            f"the plug-in {plug_in.origin} offers a method called {plug_in.entry.name!r}, which is "
-            "left out: a name may consist of A-Z, 0-9 and _ only; rename its entry point"
-        )
+        return "a name may consist of A-Z, 0-9 and _ only"
     for kind in KINDS[plug_in.group]:
         if taken := known[kind].get(plug_in.name):
-            return (
-                f"the plug-in {plug_in.origin} offers a {kind} {plug_in.name}, which is left out: "
-                f"{taken.origin} has one of that name; rename its entry point or uninstall it"
-            )
+            return f"{taken.origin} has a {kind} of that name"
     return None
 
 
 def installed_methods() -> Methods:
-    """OpenCV's methods and those of the plug-ins installed beside aerocues.
+    """OpenCV's methods, those of the plug-ins installed beside aerocues, and registered ones.
 
     A plug-in that cannot be loaded, or describes itself wrongly, is listed as unavailable; one
     whose name is malformed or taken is left out and told in ``problems``.
@@ -111,13 +204,16 @@ def installed_methods() -> Methods:
     matchers = dict(base.matchers)
     problems: list[str] = []
     for plug_in in _plug_ins():
-        known: dict[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]] = {
+        known: Known = {
             "detector": detectors,
             "descriptor": descriptors,
             "matcher": {**matchers, **base.on_request},
         }
-        if problem := _why_left_out(plug_in, known):
-            problems.append(problem)
+        if reason := _why_unfit(plug_in, known):
+            problems.append(
+                f"the plug-in {plug_in.origin} offers {plug_in.entry.name!r}, which is left out: "
+                f"{reason}; rename its entry point"
+            )
             continue
         declared = read_declaration(plug_in.entry, plug_in.group)
         if "detector" in KINDS[plug_in.group]:

@@ -14,11 +14,17 @@ from aerocues.methods.registry import Methods
 WILDCARDS = frozenset("*?[")
 
 
-def split_names(names: str | Iterable[str] | None) -> list[str]:
+Patterns = str | Combination | Iterable[str | Combination]
+"""Globs such as ``"ORB-*-HAM-BF,AKAZE-*"``, one combination, or several of both."""
+
+
+def split_names(names: Patterns | None) -> list[str]:
     """Names or patterns one by one, in upper case; a text is split at its commas."""
     if names is None:
         return []
-    parts = names.split(",") if isinstance(names, str) else list(names)
+    if isinstance(names, str | Combination):
+        names = str(names).split(",")
+    parts = [str(name) for name in names]
     return [part.strip().upper() for part in parts if part.strip()]
 
 
@@ -58,7 +64,7 @@ def _unmatched(pattern: str, methods: Methods) -> SelectionError:
         reason = (
             why_unavailable(first, methods)
             or why_incompatible(first, methods)
-            or f"{why_meaningless(first, methods)} (--all runs it all the same)"
+            or f"{why_meaningless(first, methods)} (`everything=True` runs it all the same)"
         )
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
     # A part of a name is no misspelt whole one: it wants its stars.
@@ -88,7 +94,7 @@ def _by_component(
 
 def select(
     methods: Methods,
-    patterns: str | Iterable[str] | None = None,
+    patterns: Patterns | None = None,
     *,
     detectors: str | Iterable[str] | None = None,
     descriptors: str | Iterable[str] | None = None,
@@ -99,7 +105,7 @@ def select(
     Parameters
     ----------
     methods : Methods
-    patterns : str or iterable of str, optional
+    patterns : str, Combination or iterable of both, optional
         Globs over the text form, separated by commas, in any case; a leading ``!`` takes out. A
         full name without wildcards is taken even where it is runnable but not meaningful. A
         matcher on request must be named.

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.arguments import check_whole
+from aerocues.errors import ArgumentError
 from aerocues.methods.arrays import Keypoints
 from aerocues.methods.registry import Methods
 
@@ -65,6 +67,22 @@ class KeypointLimit:
 
 
 ALL_KEYPOINTS = KeypointLimit()
+
+
+def keypoint_limit(max_keypoints: int, *, spread: bool = False) -> KeypointLimit:
+    """The limit that arguments ask for.
+
+    Raises
+    ------
+    ArgumentError
+        If the number is not whole, 0 or more, or is missing where keypoints are to be spread.
+    """
+    check_whole("max_keypoints", max_keypoints, 0)
+    if spread and not max_keypoints:
+        raise ArgumentError(
+            "`spread` chooses which keypoints are kept; give `max_keypoints` above 0, too"
+        )
+    return KeypointLimit(int(max_keypoints), spread)
 
 
 def _ranked(keypoints: Keypoints, seed: int) -> NDArray[np.intp]:

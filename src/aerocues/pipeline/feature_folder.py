@@ -42,12 +42,12 @@ def checked_folder(folder: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
         raise StoreError(
-            f"cannot keep features in {folder}: it is a file; give --features a folder"
+            f"cannot keep features in {folder}: it is a file; give a folder as `features`"
         ) from error
     except OSError as error:
         raise StoreError(
-            f"cannot keep features in {folder}: {error.strerror}; choose another folder with "
-            "--features"
+            f"cannot keep features in {folder}: {error.strerror}; choose another folder as "
+            "`features`"
         ) from error
     return folder
 

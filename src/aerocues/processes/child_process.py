@@ -50,8 +50,6 @@ class ChildProcess:
     memory_limit_mb : int
     core : int
         The core to stay on; -1 for any.
-    timeout_option : str
-        The option of the command line that sets the limit of `overrun`.
 
     Raises
     ------
@@ -66,10 +64,8 @@ class ChildProcess:
         *,
         memory_limit_mb: int,
         core: int = -1,
-        timeout_option: str = "--timeout",
     ) -> None:
         self._memory_limit_mb = memory_limit_mb
-        self._timeout_option = timeout_option
         self._folder = tempfile.TemporaryDirectory(prefix="aerocues-worker-")
         page = Path(self._folder.name) / "heartbeat"
         page.touch()
@@ -111,7 +107,7 @@ class ChildProcess:
         # Of a traceback the last line says what happened; where, is of no use to who reads it.
         raise EngineError(
             f"a worker process could not start: {lines[-1] if lines else 'no message'}; check "
-            "--memory-limit and that this Python can import aerocues"
+            "`memory_limit` and that this Python can import aerocues"
         )
 
     def send(self, work: object) -> None:
@@ -148,7 +144,7 @@ class ChildProcess:
             return Loss(
                 "out_of_memory",
                 f"{beat.call} took {memory:.0f} MB, more than the limit of "
-                f"{self._memory_limit_mb} MB (--memory-limit)",
+                f"{self._memory_limit_mb} MB",
                 beat.call,
             )
         used = times.user + times.system - beat.cpu_seconds
@@ -156,13 +152,13 @@ class ChildProcess:
         if used > timeout:
             return Loss(
                 "timeout",
-                f"{beat.call} used more than {timeout:g} CPU seconds ({self._timeout_option})",
+                f"{beat.call} used more than {timeout:g} CPU seconds",
                 beat.call,
             )
         if elapsed > timeout and used < IDLE_SHARE * elapsed:
             return Loss(
                 "timeout",
-                f"{beat.call} sat idle for {timeout:g} seconds ({self._timeout_option})",
+                f"{beat.call} sat idle for {timeout:g} seconds",
                 beat.call,
             )
         return None

@@ -9,16 +9,14 @@ from multiprocessing.connection import wait
 
 from aerocues.errors import AerocuesError
 from aerocues.methods.combination import Combination
-from aerocues.processes.call import StageCall
 from aerocues.processes.child_process import ChildProcess, Loss
+from aerocues.progress import Activity, Watch
 from aerocues.reconstruction.images import Prepared
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row
 
 POLL_SECONDS = 0.2
 SECONDS_TO_END = 5.0
-Doing = tuple[StageCall | None, float]
-Watch = Callable[[Sequence[Doing]], None]
 Group = collections.deque[Combination]
 
 
@@ -47,7 +45,6 @@ def _child(scene: Scene, limits: ReconstructionLimits) -> ChildProcess:
         "aerocues.reconstruction.worker",
         scene,
         memory_limit_mb=limits.memory_limit_mb,
-        timeout_option="--time-limit",
     )
 
 
@@ -123,7 +120,7 @@ def run_reconstructions(
         while queue or lanes:
             while queue and len(lanes) < limits.workers:
                 lanes.append(_Lane(queue.popleft(), _child(scene, limits)))
-            watch([lane.child.doing() for lane in lanes])
+            watch([Activity(n, *lane.child.doing()) for n, lane in enumerate(lanes)])
             ready = wait([lane.child.pipe for lane in lanes], POLL_SECONDS)
             for lane in list(lanes):
                 if lane.child.pipe in ready:

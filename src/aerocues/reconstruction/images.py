@@ -51,7 +51,7 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
     if isinstance(source, FileSource) and _as_it_is(source):
         shutil.copyfile(source.path, target)
     elif not cv2.imwrite(str(target), pixels.bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
-        raise ImageError(f"cannot write {target}; free space or choose another folder with -o")
+        raise ImageError(f"cannot write {target}; make room or choose another `output`")
     focal_length = None
     if isinstance(source, FileSource):
         focal_length = _exif_focal_length(source, max(width, height))
@@ -122,9 +122,9 @@ def cameras_of(
         groups[(each.width, each.height, *found)].append(each.name)
     if unknown and protocol.intrinsics == "fixed":
         raise ReconstructionError(
-            f"the focal length of {len(unknown)} of {len(prepared)} images is unknown "
-            f"({unknown[0]}, ...); give --focal-length PIXELS, or let the mapper estimate it with "
-            "--intrinsics refine"
+            f"the focal length of {len(unknown)} of {len(prepared)} images is not known "
+            f"({unknown[0]}, ...); give `focal_length` in pixels, or let the mapper estimate it "
+            'with `intrinsics="refine"`'
         )
     return tuple(
         CameraGroup(model, parameters, source, tuple(names))

@@ -34,7 +34,7 @@ def map_scene(
     folder.mkdir()
     try:
         if protocol.mapper == "global":
-            mapper = require("global_mapping", "--mapper global")
+            mapper = require("global_mapping", '`mapper="global"`')
             models = mapper(database, images, folder, _global_options(protocol))
         else:
             models = pycolmap.incremental_mapping(

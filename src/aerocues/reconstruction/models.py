@@ -46,7 +46,7 @@ class Models:
         if not (self.folder / SETTINGS).is_file():
             raise StoreError(
                 f"{self.folder} is not a folder of models (it has no {SETTINGS}); make one with "
-                f"'aerocues reconstruct DATASET -o {self.folder}'"
+                "`aerocues.reconstruct`"
             )
 
     @classmethod
@@ -59,19 +59,20 @@ class Models:
             If it cannot be created, is a file, or has other content.
         """
         if folder.exists() and not folder.is_dir():
-            raise StoreError(f"{folder} is a file; give -o the name of a folder")
+            raise StoreError(f"{folder} is a file; give the name of a folder as `output`")
         if folder.is_dir() and not (folder / SETTINGS).exists():
             own = (IMAGES, FEATURES, LIST)
             others = [p.name for p in folder.iterdir() if p.name not in own and p.name[0] != "."]
             if others:
                 raise StoreError(
-                    f"{folder} holds other files ({others[0]}, ...); give -o a new or empty folder"
+                    f"{folder} holds other files ({others[0]}, ...); give a new or empty folder as "
+                    "`output`"
                 )
         try:
             (folder / IMAGES).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise StoreError(
-                f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+                f"cannot write to {folder}: {error.strerror}; choose another `output`"
             ) from error
 
     @property

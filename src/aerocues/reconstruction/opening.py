@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from pathlib import Path
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
@@ -13,7 +14,7 @@ NEIGHBOURS = "gps"
 
 
 def open_scene(
-    spec: str,
+    spec: str | Path | Sequence[str | Path],
     *,
     pairs: str | None = None,
     max_width: int | None = None,
@@ -44,10 +45,10 @@ def open_scene(
         sequences=sequences,
         subset=subset,
     )
-    dataset = opened(pairs=pairs)
-    if pairs is not None or not _has_choice(dataset):
-        return dataset
-    located = all(image.gps is not None for image in dataset.images)
+    scene = opened(pairs=pairs)
+    if pairs is not None or not _has_choice(scene):
+        return scene
+    located = all(image.gps is not None for image in scene.images)
     chosen = NEIGHBOURS if located else EVERY_PAIR
     return opened(pairs=chosen)
 

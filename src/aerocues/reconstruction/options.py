@@ -1,48 +1,22 @@
-"""Options of a reconstruction, and the receiver of its progress."""
+"""What may be chosen of a reconstruction."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from aerocues.errors import ReconstructionError
-from aerocues.evaluation.run import usable_cores
-from aerocues.methods.combination import Combination
+from aerocues.arguments import seconds_of
+from aerocues.defaults import STAGE_TIMEOUT
 from aerocues.methods.presets import Preset
-from aerocues.reconstruction.engine import Doing, ReconstructionLimits
+from aerocues.processes.limits import memory_mb, share_of_memory, worker_count
+from aerocues.reconstruction.engine import ReconstructionLimits
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.scene import Wanted
-from aerocues.results.metrics import Row
-
-TIME_LIMIT = 1800.0
-
-
-class ReconstructionObserver:
-    """Told how it goes on; the base says nothing."""
-
-    def preparing(self, done: int, total: int) -> None:
-        """`done` of `total` images are in the folder of models."""
-
-    def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
-        """The images rule out some of the combinations."""
-
-    def planned(self, total: int, present: int) -> None:
-        """`present` of `total` combinations are already finished."""
-
-    def without_reference(self, reference: Combination, reason: str) -> None:
-        """The reference has no model: there are no distances between clouds."""
-
-    def working(self, activities: Sequence[Doing]) -> None:
-        """What the processes are doing, several times a second."""
-
-    def finished(self, row: Row) -> None:
-        """A combination is finished and stored."""
 
 
 @dataclass(frozen=True)
 class ReconstructionOptions:
-    """Options besides scene and combinations.
+    """What may be chosen besides scene and combinations; see `aerocues.reconstruct`.
 
     Parameters
     ----------
@@ -53,15 +27,21 @@ class ReconstructionOptions:
     reference : str or None
         Combination whose cloud is the reference of distances; by default the largest model.
     features : path, optional
-        Folder for features, which are reused if `run` or another reconstruction stored them there.
-        By default features are removed after the reconstruction.
-    workers, memory_limit_mb : int or None
-        Number of processes, by default one per core; memory of each, by default its share of 80 %.
-    time_limit : float
-        Limit of the CPU seconds of a stage.
+        Folder in which features are kept, and found if `run` or another reconstruction kept them
+        there; by default they are kept for the time of the reconstruction only.
+    workers : int or None
+        Processes at a time; one a core by default.
+    timeout : float or str
+        CPU time of a stage.
+    memory_limit : float or None
+        Gigabytes of each process; its share of 80 % by default.
     retry_failed : bool
-        Retry reconstructions that crashed, raised an error, or exceeded the limits of time or
-        memory.
+        Try again what crashed, raised an error, or ran out of time or memory.
+
+    Raises
+    ------
+    ArgumentError
+        If a limit makes no sense.
     """
 
     preset: str | Preset = "default"
@@ -70,16 +50,15 @@ class ReconstructionOptions:
     reference: str | None = None
     features: str | Path | None = None
     workers: int | None = None
-    memory_limit_mb: int | None = None
-    time_limit: float = TIME_LIMIT
+    timeout: float | str = STAGE_TIMEOUT
+    memory_limit: float | None = None
     retry_failed: bool = False
 
-    def limits(self) -> ReconstructionLimits:
-        """The limits of a process on this machine; ReconstructionError if they are invalid."""
-        import psutil
+    def __post_init__(self) -> None:
+        self.limits()
 
-        workers = usable_cores() if self.workers is None else self.workers
-        if workers < 1 or self.time_limit <= 0:
-            raise ReconstructionError("--workers and --time-limit must be positive")
-        share = int(0.8 * psutil.virtual_memory().total / 2**20 / workers)
-        return ReconstructionLimits(workers, self.time_limit, self.memory_limit_mb or share)
+    def limits(self) -> ReconstructionLimits:
+        """The limits of a process on this machine."""
+        workers = worker_count(self.workers)
+        memory = memory_mb(self.memory_limit) or share_of_memory(workers)
+        return ReconstructionLimits(workers, seconds_of("timeout", self.timeout), memory)

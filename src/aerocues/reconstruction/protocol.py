@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import abc
 from dataclasses import asdict, dataclass, field
-from math import isfinite
-from typing import Literal
+from typing import Literal, get_args
 
-from aerocues.errors import ReconstructionError
+from aerocues.arguments import check_choice, check_positive, check_whole
+from aerocues.defaults import FLIGHT_KEYPOINTS
 from aerocues.pipeline.protocol import ChanceTest, Verification
 
 Intrinsics = Literal["fixed", "refine"]
@@ -15,7 +15,6 @@ Mapper = Literal["incremental", "global"]
 
 # Raise this whenever the same images and methods would give other models.
 RECONSTRUCTION_VERSION = 1
-MAX_KEYPOINTS = 8000
 
 
 @dataclass(frozen=True)
@@ -80,12 +79,12 @@ class ReconstructionProtocol:
 
     Raises
     ------
-    ReconstructionError
-        If the focal length is invalid: every model would fail, after all of its work.
+    ArgumentError
+        If something makes no sense: every model would fail, each after all of its work.
     """
 
     seed: int = 0
-    max_keypoints: int = MAX_KEYPOINTS
+    max_keypoints: int = FLIGHT_KEYPOINTS
     intrinsics: Intrinsics = "fixed"
     focal_length: float | None = None
     mapper: Mapper = "incremental"
@@ -96,12 +95,12 @@ class ReconstructionProtocol:
     requirements: Requirements = Requirements()
 
     def __post_init__(self) -> None:
-        length = self.focal_length
-        if length is not None and not (isfinite(length) and length > 0):
-            raise ReconstructionError(
-                f"--focal-length {length:g} is no focal length; give pixels above 0, or leave it "
-                "out to take what EXIF tells"
-            )
+        check_whole("seed", self.seed, 0)
+        check_whole("max_keypoints", self.max_keypoints, 0)
+        check_choice("intrinsics", self.intrinsics, get_args(Intrinsics))
+        check_choice("mapper", self.mapper, get_args(Mapper))
+        if self.focal_length is not None:
+            check_positive("focal_length", self.focal_length)
 
     def matching_identity(self) -> dict[str, object]:
         """Settings that features and matches depend on."""

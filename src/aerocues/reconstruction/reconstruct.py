@@ -14,9 +14,10 @@ from aerocues.errors import ReconstructionError, StoreError
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import as_preset
-from aerocues.methods.selection import select
+from aerocues.methods.selection import Patterns, select, split_names
 from aerocues.methods.strongest import limited
 from aerocues.pipeline.feature_folder import checked_folder
+from aerocues.progress import Progress
 from aerocues.reconstruction.colmap import colmap_version
 from aerocues.reconstruction.engine import (
     ReconstructionLimits,
@@ -35,7 +36,8 @@ from aerocues.reconstruction.models import (
     write_outcome,
     write_table,
 )
-from aerocues.reconstruction.options import ReconstructionObserver, ReconstructionOptions
+from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
 from aerocues.reconstruction.references import with_distances
 from aerocues.reconstruction.scene import FEATURES, Scene
 from aerocues.results.folder_lock import folder_lock
@@ -47,10 +49,10 @@ from aerocues.results.whole_files import json_content, write_whole
 
 def reconstruct_scene(
     dataset: Dataset,
-    combinations: str | Iterable[str | Combination],
+    combinations: Patterns,
     output: Path,
     options: ReconstructionOptions,
-    observer: ReconstructionObserver,
+    progress: Progress | None = None,
     store: Store | None = None,
 ) -> Models:
     """Reconstruct a scene with each combination; see `aerocues.reconstruct`.
@@ -61,30 +63,29 @@ def reconstruct_scene(
         Results of the same scene, in which rows and clouds are stored, too.
     """
     _check_scene(dataset)
-    scene = _scene(dataset, output, options)
-    chosen = _chosen(scene, combinations, observer)
+    scene, limits = _scene(dataset, output, options), options.limits()
+    tell = ReconstructionProgress(progress)
+    chosen = _chosen(scene, combinations, tell)
     reference = Combination.parse(options.reference) if options.reference else None
     if reference is not None and reference not in chosen and not scene.place(reference).is_dir():
         raise _no_reference(reference)
     Models.create(output)
     with folder_lock(output):
-        scene = _with_cameras(scene, options.limits(), observer)
+        scene = _with_cameras(scene, limits, tell)
         others = _others(scene, chosen)
         if reference is not None and reference not in (*chosen, *others):
             raise _no_reference(reference)
         _write_settings(scene, options)
-        finished = _finished(
-            scene, chosen, retry_failed=options.retry_failed, time_limit=options.time_limit
-        )
-        observer.planned(len(chosen), len(finished))
+        finished = _finished(scene, chosen, limits, retry_failed=options.retry_failed)
+        tell.planned(len(chosen), len(finished))
         try:
             left = [each for each in chosen if each not in finished]
-            for combination, row in _reconstruct(scene, left, options.limits(), observer):
+            for combination, row in _reconstruct(scene, left, limits, tell):
                 finished[combination] = row
         finally:  # an interruption loses no finished work
             rows = {**others, **finished}
             if reference in rows and not rows[reference].get("registered_images"):
-                observer.without_reference(reference, str(rows[reference]["message"]))
+                tell.without_reference(reference, str(rows[reference]["message"]))
             if rows:
                 _write_rows(scene, rows, reference, store)
         remove_features(scene)
@@ -107,7 +108,7 @@ def _check_scene(dataset: Dataset) -> None:
     if len(sequences) > 1:
         raise ReconstructionError(
             f"{dataset.name} has {len(sequences)} scenes ({', '.join(sequences[:5])}, ...); "
-            "choose one with --sequences"
+            "choose one with `sequences`"
         )
 
 
@@ -142,13 +143,13 @@ def _features_folder(output: Path, options: ReconstructionOptions) -> Path:
 
 def _chosen(
     scene: Scene,
-    combinations: str | Iterable[str | Combination],
-    observer: ReconstructionObserver,
+    combinations: Patterns,
+    tell: ReconstructionProgress,
 ) -> list[Combination]:
-    """The combinations in the given order if each was named, else in the order of the tables."""
-    patterns = combinations if isinstance(combinations, str) else [str(c) for c in combinations]
+    """The combinations in the order asked for, where each was named; else in that of the tables."""
+    patterns = split_names(combinations)
     chosen = select(scene.methods, patterns)
-    if not isinstance(patterns, str):
+    if not isinstance(combinations, str):
         place = {name: number for number, name in enumerate(patterns)}
         chosen.sort(key=lambda each: place.get(str(each), len(place)))
     gray = any(image.source.is_gray() for image in scene.dataset.images)
@@ -162,12 +163,12 @@ def _chosen(
         )
         if not chosen:
             raise ReconstructionError(f"{reason}; choose other combinations")
-        observer.left_out(needs_colour, reason)
+        tell.left_out(needs_colour, reason)
     return chosen
 
 
 def _with_cameras(
-    scene: Scene, limits: ReconstructionLimits, observer: ReconstructionObserver
+    scene: Scene, limits: ReconstructionLimits, tell: ReconstructionProgress
 ) -> Scene:
     """The scene with its cameras; images that are not in the folder yet are written there."""
     known = read_prepared(scene.folder, scene.image_keys)
@@ -175,7 +176,7 @@ def _with_cameras(
         scene.folder, scene.image_keys, known
     )  # removed first, as its images are overwritten
     left = [image.name for image in scene.dataset.images if image.name not in known]
-    for each in prepare_images(scene, left, limits, observer.preparing):
+    for each in prepare_images(scene, left, limits, tell.read):
         known[each.name] = each
     write_prepared(scene.folder, scene.image_keys, known)
     prepared = [known[image.name] for image in scene.dataset.images]
@@ -196,7 +197,7 @@ def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
         "preset": scene.preset,
         "protocol": asdict(scene.protocol),
         "cameras": [asdict(group) for group in scene.cameras],
-        "time_limit": options.time_limit,
+        "time_limit": options.limits().seconds,
         "versions": {**software_versions(), "pycolmap": colmap_version()},
         "machine": machine_facts(),
     }
@@ -204,7 +205,11 @@ def _write_settings(scene: Scene, options: ReconstructionOptions) -> None:
 
 
 def _finished(
-    scene: Scene, chosen: Iterable[Combination], *, retry_failed: bool, time_limit: float
+    scene: Scene,
+    chosen: Iterable[Combination],
+    limits: ReconstructionLimits,
+    *,
+    retry_failed: bool,
 ) -> dict[Combination, Row]:
     """Rows of finished reconstructions that are still valid."""
     finished = {}
@@ -214,8 +219,8 @@ def _finished(
             continue
         if retry_failed and row["status"] in RETRIED:
             continue
-        if row["status"] == "timeout" and row.get("time_limit", 0.0) < time_limit:
-            continue  # it may succeed with the larger limit
+        if row["status"] == "timeout" and row.get("time_limit", 0.0) < limits.seconds:
+            continue  # it may end within the larger limit
         if row.get("registered_images") and not has_files(scene.place(combination)):
             continue
         finished[combination] = row
@@ -239,17 +244,17 @@ def _reconstruct(
     scene: Scene,
     combinations: list[Combination],
     limits: ReconstructionLimits,
-    observer: ReconstructionObserver,
+    tell: ReconstructionProgress,
 ) -> Iterable[tuple[Combination, Row]]:
-    running = run_reconstructions(scene, in_groups(combinations), limits, observer.working)
-    with contextlib.closing(running):  # an interruption ends the processes immediately
+    running = run_reconstructions(scene, in_groups(combinations), limits, tell.watch)
+    with contextlib.closing(running):  # an interruption ends the processes here and now
         for combination, figures, last in running:
             when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}
             row = {**_identity(scene, combination), **figures, **when}
             write_outcome(scene.place(combination), row)
             if last:
                 remove_features(scene, combination)
-            observer.finished(row)
+            tell.finished(row)
             yield combination, row
 
 

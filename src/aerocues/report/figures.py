@@ -88,7 +88,7 @@ def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Pa
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(
-            f"cannot make the folder {target}: {error.strerror}; give --figures another folder"
+            f"cannot make the folder {target}: {error.strerror}; give another folder as `figures`"
         ) from error
     written: list[Path] = []
     with rc_context(STYLE):

@@ -60,8 +60,8 @@ def _plotly() -> str:
         from plotly.offline import get_plotlyjs
     except ImportError as error:
         raise MethodUnavailableError(
-            f"the page needs plotly ({error}); install it with: pip install plotly, or make the "
-            "report on another machine; --format markdown does not need it"
+            f"the page needs plotly ({error}); install it: pip install plotly, or report "
+            "where it is"
         ) from error
 
     return str(get_plotlyjs())

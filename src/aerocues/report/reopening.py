@@ -16,7 +16,7 @@ from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.report.entry import ReportEntry
 
-HINT = "give their location with --images, in the form that 'aerocues run' takes"
+HINT = "name the place where they are now as `images`, such as oxford:DIR"
 
 
 def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:

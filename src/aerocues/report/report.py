@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
+from aerocues.arguments import check_number, check_whole
+from aerocues.defaults import MEGABYTES, PICTURED, RESAMPLES
 from aerocues.errors import ScoreError, StoreError
+from aerocues.progress import Progress, StageProgress
 from aerocues.report.entry import ReportEntry
 from aerocues.results.export import write_file
-from aerocues.results.measured_results import Results
+from aerocues.results.measured_results import Results, as_results
 from aerocues.scoring.across import entries_of
-from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.ranking import rank_alternatives
+from aerocues.scoring.settings import Failures, Names
 from aerocues.scoring.validation import validate
-
-Progress = Callable[[str], None]
-PICTURED = 4
-MEGABYTES = 15.0
 
 
 def report_entries(
     results: Sequence[Results],
     preset: str | None = None,
     *,
-    criteria: Sequence[str] | None = None,
+    criteria: Names | None = None,
     reconstruction: bool | None = None,
     resamples: int = RESAMPLES,
     seed: int = 0,
@@ -44,7 +43,7 @@ def report_entries(
     resamples, seed
         Settings of the intervals.
     progress : callable, optional
-        Called with a short description of each step.
+        Called with each `aerocues.Event`, whose message says what is being done.
     **changes
         Settings in place of the preset's: ``alpha, weights, aggregation, failures``. None keeps
         those of the preset.
@@ -57,14 +56,14 @@ def report_entries(
     import polars as pl
 
     if not results:
-        raise ScoreError("no results were given; name a results folder")
-    told = progress or _silent
+        raise ScoreError("there are no results to report on; name a results folder")
+    told = StageProgress(progress, "reporting").say
     told("reading and scoring")
     entries = entries_of(
         results, preset, criteria=criteria, reconstruction=reconstruction, **changes
     )
     if not entries:
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     found = []
     for entry in entries:
         source = results[entry.source]
@@ -78,8 +77,11 @@ def report_entries(
     return found
 
 
-def _silent(_: str) -> None:
-    pass
+def listed(results: Results | str | Path | Sequence[Results | str | Path]) -> list[Results]:
+    """Results one by one, opened."""
+    if isinstance(results, Results | str | Path):
+        return [as_results(results)]
+    return [as_results(each) for each in results]
 
 
 def default_title(entries: Sequence[ReportEntry]) -> str:
@@ -89,32 +91,35 @@ def default_title(entries: Sequence[ReportEntry]) -> str:
 
 
 def write_report(
-    results: Results | Sequence[Results],
+    results: Results | str | Path | Sequence[Results | str | Path],
     output: str | Path = "report.html",
     *,
     title: str | None = None,
     preset: str | None = None,
-    criteria: Sequence[str] | None = None,
+    criteria: Names | None = None,
     reconstruction: bool | None = None,
+    failures: Failures | None = None,
+    alpha: float | None = None,
+    weights: Names | None = None,
+    aggregation: str | None = None,
     images: Sequence[str] = (),
     pictures: int = PICTURED,
     max_megabytes: float = MEGABYTES,
     resamples: int = RESAMPLES,
     seed: int = 0,
     progress: Progress | None = None,
-    **changes: object,
 ) -> Path:
     """Write everything into one HTML page, which needs no network.
 
     Parameters
     ----------
-    results : Results or sequence of Results
-        Results of one or several datasets and machines.
+    results : Results, path, or sequence of them
+        Of one or several datasets and machines.
     output : path
         HTML file; an existing file is replaced.
     title : str, optional
-    preset, criteria, reconstruction, resamples, seed, **changes
-        How to score; see `report_entries`.
+    preset, criteria, reconstruction, failures, alpha, weights, aggregation, resamples, seed
+        How to score; see `aerocues.score`.
     images : sequence of str
         New locations of images that have moved, in the form of `open_dataset`.
     pictures : int
@@ -122,7 +127,7 @@ def write_report(
     max_megabytes : float
         Clouds and pictures are left out until the page is at most this large.
     progress : callable, optional
-        Called with a short description of each step.
+        Called with each `aerocues.Event`, whose message says what is being done.
 
     Returns
     -------
@@ -134,16 +139,20 @@ def write_report(
     AerocuesError
         If the results cannot be scored or the file cannot be written.
     """
-    listed = [results] if isinstance(results, Results) else list(results)
+    check_whole("pictures", pictures, 0)
+    check_number("max_megabytes", max_megabytes, 5)
     entries = report_entries(
-        listed,
+        listed(results),
         preset,
         criteria=criteria,
         reconstruction=reconstruction,
         resamples=resamples,
         seed=seed,
         progress=progress,
-        **changes,
+        failures=failures,
+        alpha=alpha,
+        weights=weights,
+        aggregation=aggregation,
     )
     return write_page(
         entries,
@@ -174,7 +183,7 @@ def write_page(
     from aerocues.report.pictures import pictures_of
     from aerocues.report.size import fitting, fitting_clouds, size_of
 
-    told = progress or _silent
+    told = StageProgress(progress, "reporting").say
     folder = output.expanduser().parent
     if not folder.is_dir():  # reported before the pictures, which take long
         raise StoreError(

@@ -39,7 +39,7 @@ def fitting(found: Sequence[Pictures], room: int) -> Pictures:
     if left_out:
         kept.notes.append(
             f"{left_out} of {left_out + len(kept.pictures)} pictures are left out to keep the page "
-            "small (--max-megabytes)"
+            "small"
         )
     return kept
 
@@ -63,10 +63,7 @@ def fitting_clouds(found: Sequence[Clouds], room: int) -> Clouds:
         kept.clouds.append(cloud)
     left_out = len(turns) - len(kept.clouds)
     if left_out:
-        kept.notes.append(
-            f"{left_out} of {len(turns)} clouds are left out to keep the page small "
-            "(--max-megabytes)"
-        )
+        kept.notes.append(f"{left_out} of {len(turns)} clouds are left out to keep the page small")
     return kept
 
 

@@ -101,5 +101,5 @@ def read_cloud(content: bytes, where: str | Path) -> Cloud:
             return Cloud(**{**found, "unit": str(found["unit"])})
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise StoreError(
-            f"{where} is damaged ({error}); remove it and run 'aerocues reconstruct' again"
+            f"{where} is damaged ({error}); remove it and reconstruct again"
         ) from error

@@ -26,12 +26,12 @@ def folder_lock(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise StoreError(
             f"cannot write to {folder}: {error.strerror}; make room or access, or choose another "
-            "folder with -o"
+            "`output`"
         ) from error
     with file:
         if not _locked(file):
             raise StoreError(
-                f"another run is writing to {folder}; wait for it or give -o another folder"
+                f"another run is writing to {folder}; wait for it or choose another `output`"
             )
         yield
 

@@ -163,19 +163,20 @@ def _check_places(output: Path, imports: Sequence[_Import]) -> None:
         if (output / RUN).is_file():
             raise StoreError(
                 f"{output} is a results folder itself, and there are {len(imports)} datasets and "
-                "platforms; give -o another folder, or choose with --dataset and --platform"
+                "platforms; choose another `output`, or one of them by `dataset` and `platform`"
             )
         other = next(output.iterdir(), None)
         if other and not any(output.glob(f"*/{RUN}")):
             raise StoreError(
-                f"{output} holds other files ({other.name}, ...); give -o a new or empty folder"
+                f"{output} holds other files ({other.name}, ...); give a new or empty folder as "
+                "`output`"
             )
     for one in imports:
         _check_place(one)
 
 
 def _check_place(one: _Import) -> None:
-    folder, another = one.folder, "give -o another folder"
+    folder, another = one.folder, "give another folder as `output`"
     if not folder.is_dir():
         return  # a file is refused when the folder is created
     others = [path.name for path in folder.iterdir() if path.name not in OWN]

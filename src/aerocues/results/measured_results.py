@@ -51,6 +51,11 @@ class RunStatus:
         return max(self.planned - self.done, 0)
 
 
+def as_results(results: Results | str | Path) -> Results:
+    """Results as they are, or those of a folder or packed file."""
+    return results if isinstance(results, Results) else Results(results)
+
+
 class Results:
     """The rows of a results folder.
 

@@ -102,8 +102,7 @@ def _extract(file: Path, folder: Path) -> None:
     except BROKEN as error:
         raise StoreError(
             f"{file} is neither a results folder nor packed results ({error}); give a results "
-            "folder, pack "
-            "it again, or read a table with 'aerocues import'"
+            "folder, pack it again, or read a table with `aerocues.import_results`"
         ) from error
     except OSError as error:
         raise StoreError(

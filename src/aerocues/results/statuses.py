@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class Status:
     """One outcome.
 
-    ``retried`` says whether ``--retry-failed`` runs such rows again: those whose failure depends on
-    the machine or on a bug of a method, not on the images.
+    ``retried`` says whether ``retry_failed`` runs such a row again: where the machine or a
+    method's bug decided, not the images.
     """
 
     name: str

@@ -52,13 +52,13 @@ class Store(ReconstructionStore):
             If the folder cannot be created or written, or has other content.
         """
         if folder.exists() and not folder.is_dir():
-            raise StoreError(f"{folder} is a file; give -o the name of a folder")
+            raise StoreError(f"{folder} is a file; give the name of a folder as `output`")
         if folder.is_dir() and not (folder / RUN).exists() and any(folder.iterdir()):
             left_over = [path for path in folder.iterdir() if path.name not in OWN]
             if left_over:
                 raise StoreError(
-                    f"{folder} holds other files ({left_over[0].name}, ...); give -o a new or "
-                    "empty folder"
+                    f"{folder} holds other files ({left_over[0].name}, ...); give a new or "
+                    "empty folder as `output`"
                 )
         store = cls(folder)
         try:
@@ -67,7 +67,7 @@ class Store(ReconstructionStore):
                 pass
         except OSError as error:
             raise StoreError(
-                f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+                f"cannot write to {folder}: {error.strerror}; choose another `output`"
             ) from error
         return store
 
@@ -98,8 +98,7 @@ class Store(ReconstructionStore):
                     f"{folder / inner[0]}: {', '.join(inner[:LONGEST_LIST])}{more}"
                 )
             raise StoreError(
-                f"{folder} is not a results folder (it has no {RUN}); make one with "
-                f"'aerocues run DATASET -o {folder}'"
+                f"{folder} is not a results folder (it has no {RUN}); make one with `aerocues.run`"
             )
         return cls(folder)
 
@@ -145,7 +144,7 @@ class Store(ReconstructionStore):
 
         if not (self.folder / PLAN).is_file():
             raise StoreError(
-                f"{self.folder / PLAN} is missing; run the same 'aerocues run' command again to "
+                f"{self.folder / PLAN} is missing; measure the same again with `aerocues.run` to "
                 "restore it"
             )
         return with_all_columns(self._collect(pl.scan_parquet(self.folder / PLAN)))
@@ -173,11 +172,13 @@ class Store(ReconstructionStore):
             content = json.loads((self.folder / RUN).read_text(encoding="utf-8"))
         except (OSError, json.JSONDecodeError) as error:
             raise StoreError(
-                f"cannot read {self.folder / RUN}: {error}; run the same 'aerocues run' command "
-                "again to restore it"
+                f"cannot read {self.folder / RUN}: {error}; measure the same again with "
+                "`aerocues.run` to restore it"
             ) from error
         if not isinstance(content, dict):
-            raise StoreError(f"{self.folder / RUN} is damaged; run the same command again")
+            raise StoreError(
+                f"{self.folder / RUN} is damaged; measure the same again with `aerocues.run`"
+            )
         return content
 
     def parts(self) -> list[Path]:

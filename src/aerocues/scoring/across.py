@@ -12,7 +12,8 @@ from aerocues.errors import ScoreError
 from aerocues.scoring.comparison import Comparison, Over, compare
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
-from aerocues.scoring.platforms import compare_times
+from aerocues.scoring.platforms import compare_times, device_factors
+from aerocues.scoring.settings import Names
 
 if TYPE_CHECKING:
     import polars as pl
@@ -99,11 +100,59 @@ class Machines:
         )
 
 
+@dataclass(frozen=True)
+class ComparedResults:
+    """Rankings side by side, and the same data on two machines.
+
+    Attributes
+    ----------
+    entries : sequence of Entry
+        What was scored: each dataset as each machine measured it.
+    rankings : Comparison
+        Of all entries.
+    machines : sequence of Machines
+        Every two entries of one dataset.
+    """
+
+    entries: Sequence[Entry]
+    rankings: Comparison
+    machines: Sequence[Machines]
+
+    def frame(self) -> pl.DataFrame:
+        """One row a combination, with its score and rank in each entry, the most versatile first.
+
+        Returns
+        -------
+        pl.DataFrame
+            ``combination``; ``mean, min, spread`` of the scores; ``mean_rank, worst_rank``; and
+            ``score_NAME, rank_NAME`` of each entry.
+        """
+        return self.rankings.versatility().rename({"alternative": "combination"})
+
+    def factors(self) -> dict[str, object]:
+        """How much longer each stage takes on the second machine: for ``recommend(device=)``.
+
+        Raises
+        ------
+        ScoreError
+            If these are not two entries of one dataset.
+        """
+        if len(self.entries) != 2 or self.entries[0].dataset != self.entries[1].dataset:
+            raise ScoreError("`factors` needs two results of the same dataset, from two machines")
+        here, there = self.entries
+        return {
+            "machine": there.machine,
+            "measured_on": here.machine,
+            "dataset": here.dataset,
+            "stages": device_factors(here.rows, there.rows),
+        }
+
+
 def entries_of(
     results: Sequence[Stored],
     preset: str | None = None,
     *,
-    criteria: Sequence[str] | None = None,
+    criteria: Names | None = None,
     reconstruction: bool | None = False,
     **changes: object,
 ) -> list[Entry]:
@@ -153,7 +202,7 @@ def entries_of(
     presets = sorted({entry.preset for _, entry in found})
     if len(presets) > 1:
         raise ScoreError(
-            f"the results suit different presets ({', '.join(presets)}); choose one with --preset"
+            f"the results suit different presets ({', '.join(presets)}); choose one with `preset`"
         )
     return _with_names(found)
 
@@ -180,6 +229,13 @@ def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
     else:
         names = [f"{number + 1} {entry.dataset}" for number, (_, entry) in enumerate(found)]
     return [replace(entry, name=name) for name, (_, entry) in zip(names, found, strict=True)]
+
+
+def compare_entries(entries: Sequence[Entry], over: Over = "pairwise") -> ComparedResults:
+    """Compare all entries, and those of one dataset on several machines."""
+    return ComparedResults(
+        entries, compare_datasets(entries, over), compare_machines(entries, over)
+    )
 
 
 def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Comparison:

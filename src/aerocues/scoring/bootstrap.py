@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.errors import ScoreError
+from aerocues.arguments import check_whole
+from aerocues.defaults import RESAMPLES
 from aerocues.scoring.cues import Scores, rank, score_batch
 from aerocues.scoring.normalisation import Sums, normalise
 from aerocues.scoring.resampling import Unit, draws, independent_units, unit_of_resampling
@@ -15,7 +16,6 @@ from aerocues.scoring.resampling import Unit, draws, independent_units, unit_of_
 Array = NDArray[np.float64]
 BATCH_ELEMENTS = 2_000_000
 CONFIDENCE = 0.95
-RESAMPLES = 1000
 
 
 @dataclass(frozen=True)
@@ -84,13 +84,11 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
 
     Raises
     ------
-    ScoreError
+    ArgumentError
         If there are fewer than 2 resamples or the seed is negative.
     """
-    if resamples != int(resamples) or resamples < 2:
-        raise ScoreError(f"resamples must be a whole number of at least 2, got {resamples}")
-    if seed != int(seed) or seed < 0:
-        raise ScoreError(f"seed must be a whole number of at least 0, got {seed}")
+    check_whole("resamples", resamples, 2)
+    check_whole("seed", seed, 0)
     table, sums = scores.table, Sums(scores.table)
     whole = sums.means(np.ones((1, len(table.repeats))))
     size = max(len(table.alternatives), len(table.repeats)) * len(table.criteria)

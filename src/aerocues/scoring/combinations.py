@@ -64,7 +64,7 @@ def decision_table(
         If there are no rows, they belong to several datasets, or a column is missing.
     """
     if rows.is_empty():
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     datasets = rows["dataset"].unique().sort().to_list()
     if len(datasets) > 1:
         raise ScoreError(

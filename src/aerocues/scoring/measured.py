@@ -1,14 +1,14 @@
-"""Scores measured results: from a results folder to a ranking."""
+"""Measured results as a table that can be scored."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from aerocues.errors import ScoreError
+from aerocues.errors import ArgumentError, ScoreError
 from aerocues.results.combination_columns import METHODS, combination_name
-from aerocues.scoring.bootstrap import RESAMPLES
 from aerocues.scoring.combinations import (
     SUCCESS,
     decision_table,
@@ -16,12 +16,19 @@ from aerocues.scoring.combinations import (
     suitable_preset,
 )
 from aerocues.scoring.criteria import Criterion, criteria_named
-from aerocues.scoring.ranking import TOP_K, Interval, Ranking, rank_alternatives
-from aerocues.scoring.settings import ScorePreset, ScoreSettings, score_preset_named
+from aerocues.scoring.settings import (
+    Names,
+    ScorePreset,
+    ScoreSettings,
+    names_of,
+    score_preset_named,
+)
 from aerocues.scoring.table import DecisionTable
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from aerocues.results.measured_results import Results
 
 # If fewer are reconstructed, they are a selection by the user, and the others keep their score.
 ENOUGH_RECONSTRUCTED = 0.5
@@ -37,6 +44,30 @@ class Measured(Protocol):
     def reconstructions(self) -> pl.DataFrame:
         """Rows of reconstructions; may be empty."""
         ...
+
+
+Given = TypeVar("Given", bound=Measured)
+
+
+def opened(results: Given | str | Path) -> Given | Results:
+    """Results as they are, or those of a folder or packed file.
+
+    Raises
+    ------
+    ArgumentError
+        If they are neither.
+    StoreError
+        If there are no results at that place.
+    """
+    if isinstance(results, str | Path):
+        from aerocues.results.measured_results import Results
+
+        return Results(results)
+    if not hasattr(results, "table"):
+        raise ArgumentError(
+            f"`results` must be Results or the path of a results folder, got {results!r}"
+        )
+    return results
 
 
 @dataclass(frozen=True)
@@ -89,7 +120,7 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
     datasets = rows["dataset"].unique().sort().to_list()
     if dataset is None and len(datasets) > 1:
         raise ScoreError(
-            f"there are several datasets; choose one of them (--dataset): {', '.join(datasets)}"
+            f"there are several datasets; choose one as `dataset`: {', '.join(datasets)}"
         )
     if dataset is not None and dataset not in datasets:
         raise ScoreError(f"there is no dataset {dataset!r}; choose from {', '.join(datasets)}")
@@ -99,6 +130,8 @@ def rows_of_dataset(rows: pl.DataFrame, dataset: str | None) -> pl.DataFrame:
 def settings_from(preset: ScorePreset, **changes: object) -> ScoreSettings:
     """Settings of a preset, replaced by the changes that are not None."""
     given = {name: value for name, value in changes.items() if value is not None}
+    if "weights" in given:
+        given["weights"] = names_of(given["weights"])  # type: ignore[arg-type]
     return replace(preset.settings, **given)  # type: ignore[arg-type]
 
 
@@ -106,7 +139,7 @@ def table_of(
     results: Measured,
     preset: str | None = None,
     *,
-    criteria: Sequence[str] | None = None,
+    criteria: Names | None = None,
     dataset: str | None = None,
     reconstruction: bool | None = None,
 ) -> MeasuredTable:
@@ -119,6 +152,8 @@ def table_of(
     preset : str, optional
         A row of `settings.SCORE_PRESETS`; the one that suits the measurements by default.
     criteria : sequence of str, optional
+        A row of `settings.PRESETS`; the one that suits the measurements by default.
+    criteria : str or sequence of str, optional
         In place of the preset's.
     dataset : str, optional
         Needed if there are several.
@@ -135,11 +170,11 @@ def table_of(
 
     rows = rows_of_dataset(results.table(), dataset)
     if rows.is_empty():
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     chosen = score_preset_named(preset) if preset else suitable_preset(rows)
     _refuse_failure(rows, chosen)
     models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
-    names = chosen.criteria if criteria is None else tuple(criteria)
+    names = chosen.criteria if criteria is None else names_of(criteria)
     if reconstruction is None:
         reconstruction = criteria is None and _enough_models(rows, models)
     if reconstruction:
@@ -160,7 +195,7 @@ def _refuse_failure(rows: pl.DataFrame, preset: ScorePreset) -> None:
     told = ", ".join(f"{status} {number:,}" for status, number in statuses.items())
     raise ScoreError(
         f"nothing succeeded on {rows['dataset'][0]} ({told}), so there is nothing to rank; "
-        "'aerocues status' tells why: try larger images (--max-width), other pairs or combinations"
+        "its messages tell why: try larger images (`max_width`), other pairs or combinations"
     )
 
 
@@ -186,60 +221,6 @@ def _refuse_chance(criteria: Sequence[Criterion]) -> None:
     needed = [each.name for each in criteria if each.beyond_chance]
     if needed:
         raise ScoreError(
-            f"no row has inliers beyond chance, which {needed[0]} needs; score with --preset "
-            "thesis, or measure with 'aerocues run --preset default'"
+            f"no row has inliers beyond chance, which {needed[0]} needs; score with "
+            '`preset="thesis"`, or measure again with `aerocues.run` and `preset="default"`'
         )
-
-
-def score(
-    results: Measured,
-    preset: str | None = None,
-    *,
-    criteria: Sequence[str] | None = None,
-    dataset: str | None = None,
-    reconstruction: bool | None = None,
-    settings: ScoreSettings | None = None,
-    resamples: int = RESAMPLES,
-    seed: int = 0,
-    interval: Interval = "joint",
-    test: str = "bootstrap",
-    top_k: int = TOP_K,
-) -> Ranking:
-    """Rank the combinations of measured results by CUES.
-
-    Parameters
-    ----------
-    results : Measured
-        Such as `aerocues.Results`.
-    preset : str, optional
-        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; by
-        default the one that suits the measurements.
-    criteria : sequence of str, optional
-        Names of rows of `criteria.CRITERIA`, in place of the preset's.
-    dataset : str, optional
-        Needed if there are several.
-    reconstruction : bool, optional
-        Whether to add the criteria of reconstruction; by default if most combinations were
-        reconstructed.
-    settings : ScoreSettings, optional
-        In place of the preset's.
-    resamples, seed, interval, test, top_k
-        See `ranking.rank_alternatives`.
-
-    Raises
-    ------
-    ScoreError
-        If something does not exist or was not measured.
-    """
-    found = table_of(
-        results, preset, criteria=criteria, dataset=dataset, reconstruction=reconstruction
-    )
-    return rank_alternatives(
-        found.table,
-        settings or found.preset.settings,
-        resamples=resamples,
-        seed=seed,
-        interval=interval,
-        test=test,
-        top_k=top_k,
-    )

@@ -116,10 +116,3 @@ OBJECTIVES: dict[str, Objective] = {
         ),
     )
 }
-
-
-def objective_named(name: str) -> Objective:
-    """The objective of this name; ScoreError if there is none."""
-    if name not in OBJECTIVES:
-        raise ScoreError(f"there is no objective {name!r}; choose from {', '.join(OBJECTIVES)}")
-    return OBJECTIVES[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ from aerocues.scoring.combinations import (
 from aerocues.scoring.correlation import correlation_between
 from aerocues.scoring.criteria import Better, criteria_named
 from aerocues.scoring.long_form import values_of
-from aerocues.scoring.measured import Measured, rows_of_dataset
+from aerocues.scoring.measured import Measured, opened, rows_of_dataset
 from aerocues.scoring.settings import score_preset_named
 
 if TYPE_CHECKING:
@@ -140,7 +141,7 @@ class Relations:
 
 
 def relate_outcomes(
-    results: Measured, preset: str | None = None, *, dataset: str | None = None
+    results: Measured | str | Path, preset: str | None = None, *, dataset: str | None = None
 ) -> Relations:
     """Correlate figures of image pairs with figures of reconstructions, over the combinations.
 
@@ -149,12 +150,16 @@ def relate_outcomes(
 
     Parameters
     ----------
-    results : Measured
-        Such as `aerocues.Results`.
+    results : Results or path
+        A results folder or packed results, with reconstructions.
     preset : str, optional
         A row of `settings.SCORE_PRESETS`: whether pairs that do not beat chance have failed.
     dataset : str, optional
         Needed if there are several.
+
+    Returns
+    -------
+    Relations
 
     Raises
     ------
@@ -164,11 +169,12 @@ def relate_outcomes(
     """
     import polars as pl
 
-    rows = rows_of_dataset(results.table(), dataset)
+    measured = opened(results)
+    rows = rows_of_dataset(measured.table(), dataset)
     if rows.is_empty():
-        raise ScoreError("there are no measured rows; run 'aerocues run' first")
+        raise ScoreError("there are no measured rows; measure some with `aerocues.run`")
     chosen = score_preset_named(preset) if preset else suitable_preset(rows)
-    models = results.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
+    models = measured.reconstructions().filter(pl.col("dataset") == rows["dataset"][0])
     return relations_of(rows, models, chance_fails=chosen.chance_fails)
 
 
@@ -181,7 +187,7 @@ def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
         raise ScoreError(
             f"{len(joined)} combinations were both measured and reconstructed, too few for "
             f"correlations of pairs and models; make {FEWEST_MODELS} or more with "
-            "'aerocues reconstruct'"
+            "`aerocues.reconstruct`"
         )
     return _related(rows["dataset"][0], joined, features.columns[1:])
 

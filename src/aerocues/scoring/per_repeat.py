@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.scoring.bootstrap import CONFIDENCE, RESAMPLES
+from aerocues.defaults import RESAMPLES
+from aerocues.scoring.bootstrap import CONFIDENCE
 from aerocues.scoring.cues import Scores
 from aerocues.scoring.normalisation import Sums, normalise
 from aerocues.scoring.resampling import independent_units

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.arguments import check_choice, check_whole
+from aerocues.defaults import RESAMPLES, TOP_K
 from aerocues.errors import ScoreError
-from aerocues.scoring.bootstrap import RESAMPLES, Bootstrap, bootstrap
+from aerocues.scoring.bootstrap import Bootstrap, bootstrap
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.per_repeat import interval_of_repeats
 from aerocues.scoring.settings import ScoreSettings
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Interval = Literal["joint", "pairwise"]
-TOP_K = 5
 
 INTERVALS: dict[str, Callable[[Scores, Bootstrap, int], tuple[Array, Array]]] = {
     "joint": lambda scores, resampled, seed: resampled.score_interval(),
@@ -46,6 +47,8 @@ class Ranking:
         Score interval: joint resampling of all alternatives, or pairwise as in the thesis.
     top_k : int
         Number of first places that ``probability_top`` counts.
+    noun : str
+        What the alternatives are.
     """
 
     scores: Scores
@@ -54,14 +57,15 @@ class Ranking:
     seed: int
     interval: Interval
     top_k: int
+    noun: str = "alternative"
 
-    def frame(self, name: str = "alternative") -> pl.DataFrame:
+    def frame(self, name: str | None = None) -> pl.DataFrame:
         """The ranking as a table, the best first, without alternatives that have no score.
 
         Parameters
         ----------
-        name : str
-            Name of the column of alternatives.
+        name : str, optional
+            Name of the column of alternatives; their `noun` by default.
 
         Returns
         -------
@@ -78,7 +82,7 @@ class Ranking:
         """
         import polars as pl
 
-        scores, table = self.scores, self.scores.table
+        name, scores, table = name or self.noun, self.scores, self.scores.table
         low, high = INTERVALS[self.interval](scores, self.resampled, self.seed)
         rank_low, rank_high = self.resampled.rank_interval()
         figures: dict[str, Any] = {
@@ -161,6 +165,7 @@ def rank_alternatives(
     interval: Interval = "joint",
     test: str = "bootstrap",
     top_k: int = TOP_K,
+    noun: str = "alternative",
 ) -> Ranking:
     """Score a table and estimate the uncertainty of the ranking.
 
@@ -177,17 +182,17 @@ def rank_alternatives(
         Significance test against the best; see `significance.compare_with_best`.
     top_k : int
         Number of first places that ``probability_top`` counts.
+    noun : str
+        What the alternatives are.
 
     Raises
     ------
-    ScoreError
-        If the table cannot be scored or an argument does not exist.
+    AerocuesError
+        If the table cannot be scored or an argument makes no sense.
     """
-    if top_k < 1:
-        raise ScoreError(f"top_k must be at least 1, got {top_k}")
-    if interval not in INTERVALS:
-        raise ScoreError(f"there is no interval {interval!r}; choose from {', '.join(INTERVALS)}")
+    check_whole("top_k", top_k, 1)
+    check_choice("interval", interval, INTERVALS)
     scores = score(table, settings)
     resampled = bootstrap(scores, resamples, seed)
     comparisons = compare_with_best(scores, resampled, test)
-    return Ranking(scores, resampled, comparisons, seed, interval, top_k)
+    return Ranking(scores, resampled, comparisons, seed, interval, top_k, noun)

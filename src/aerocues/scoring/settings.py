@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -9,8 +10,16 @@ from aerocues.errors import ScoreError
 from aerocues.scoring.aggregation import AGGREGATIONS
 from aerocues.scoring.weights import WEIGHT_METHODS
 
+Names = str | Sequence[str]
+"""Names one by one, or in a text with commas."""
 Failures = Literal["worst", "omit"]
 FAILURES: tuple[Failures, ...] = ("worst", "omit")
+
+
+def names_of(names: Names) -> tuple[str, ...]:
+    """Names one by one."""
+    parts = names.split(",") if isinstance(names, str) else names
+    return tuple(name.strip() for name in parts if name.strip())
 
 
 def _check(name: str, what: str, choices: tuple[str, ...]) -> None:

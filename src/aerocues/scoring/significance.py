@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.errors import ScoreError
+from aerocues.arguments import check_choice
 from aerocues.scoring.bootstrap import Bootstrap
 from aerocues.scoring.cues import DIGITS, Scores
 from aerocues.scoring.per_repeat import scores_of_units
@@ -147,8 +147,7 @@ def compare_with_best(
     significantly from the unluckiest. With only two alternatives and several criteria, the weights
     follow the differences, so that small p-values are too frequent.
     """
-    if test not in TESTS:
-        raise ScoreError(f"there is no test {test!r}; choose from {', '.join(TESTS)}")
+    check_choice("test", test, TESTS)
     p_values = TESTS[test](scores, resampled)
     p_values[scores.best] = np.nan
     return ComparisonsWithBest(

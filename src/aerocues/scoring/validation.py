@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.defaults import SHORTLIST
 from aerocues.errors import MethodUnavailableError, ScoreError
 from aerocues.scoring.agreement import Agreement, agreement
 from aerocues.scoring.correlation import criteria_correlation
@@ -21,7 +22,6 @@ from aerocues.scoring.sensitivity import Variants, by_aggregation, by_alpha, by_
 if TYPE_CHECKING:
     import polars as pl
 
-SHORTLIST = 10
 # Axes of the Pareto front: the first criterion of each list that the table has.
 SPEED = (
     "seconds_per_1k_excess_inliers",
@@ -38,6 +38,8 @@ class Validation:
 
     Attributes
     ----------
+    scores : Scores
+        What was examined.
     alpha, aggregation, criterion_left_out : Variants
     agreement : Agreement or str
         A text says why it is not available.
@@ -55,6 +57,7 @@ class Validation:
         For the shortlist; a text says why it is not available.
     """
 
+    scores: Scores
     alpha: Variants
     aggregation: Variants
     criterion_left_out: Variants
@@ -94,6 +97,7 @@ def validate(
     """
     chosen = _pareto_criteria(scores, speed, quality)
     return Validation(
+        scores=scores,
         alpha=by_alpha(scores),
         aggregation=by_aggregation(scores),
         criterion_left_out=by_criterion_left_out(scores),

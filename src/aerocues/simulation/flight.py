@@ -12,15 +12,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from aerocues.arguments import check_whole
 from aerocues.datasets.dataset import PinholeCamera
 from aerocues.datasets.options import Options
 from aerocues.errors import SimulationError
+from aerocues.progress import Progress, StageProgress
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.exports import write_poses
 from aerocues.simulation.flight_folder import FlightFolder, write_depth, write_json
@@ -36,7 +37,6 @@ RENDERER_VERSION = "2"
 """Part of the keys of frames; increased when the same settings give other images."""
 
 SUFFIXES = {"png": ".png", "jpeg": ".jpg"}
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,8 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.form not in SUFFIXES:
-            raise SimulationError(f"form must be one of {', '.join(SUFFIXES)}, got {self.form!r}")
+            raise SimulationError(f"format '{self.form}' is unknown; use {', '.join(SUFFIXES)}")
+        check_whole("seed", self.seed, 0)
         if min(self.width, self.height) < 16 or not 1.0 <= self.fov <= 150.0:
             raise SimulationError(
                 "width and height must be at least 16 pixels, the field of view 1 to 150 degrees"
@@ -96,7 +97,7 @@ class Flown:
     kept: int
 
 
-def simulate(
+def fly(
     folder: Path,
     survey: Survey,
     settings: Settings,
@@ -114,7 +115,7 @@ def simulate(
     survey : Survey
     settings : Settings
     progress : callable, optional
-        Called with the numbers of finished images and of all images, first at the start.
+        Called with each `aerocues.Event`, first with the number of images that are kept.
     subset : str, optional
         Render only the images whose name or folder matches one of these globs, separated by commas.
         The poses of the whole survey are written.
@@ -137,18 +138,16 @@ def simulate(
     place.keep(keys)
     write_poses(place.truth, names, [shot.pose for shot in survey.shots], times, settings.camera)
     write_json(place.truth / "camera.json", {"camera": asdict(settings.camera), **asdict(settings)})
-    if progress is not None:
-        progress(0, len(chosen))
-    studio, rendered = _Studio(settings, half), 0
-    for done, number in enumerate(chosen, start=1):
+    left = [number for number in chosen if not place.has(names[number])]
+    kept, studio = len(chosen) - len(left), _Studio(settings, half)
+    stage = StageProgress(progress, "rendering", "images", kept, len(chosen))
+    stage.tell()
+    for done, number in enumerate(left, start=1):
         name, pose = names[number], survey.shots[number].pose
-        if not place.has(name):
-            studio.take(pose, times[number], number, place.image(name), place.depth(name))
-            place.add(name, keys[name])
-            rendered += 1
-        if progress is not None:
-            progress(done, len(chosen))
-    return Flown(rendered, len(chosen) - rendered)
+        studio.take(pose, times[number], number, place.image(name), place.depth(name))
+        place.add(name, keys[name])
+        stage.tell(done=kept + done, share=done / len(left))
+    return Flown(len(left), kept)
 
 
 def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
@@ -167,7 +166,7 @@ def shots_in(survey: Survey, subset: str | None, form: str) -> list[int]:
         folders = list(dict.fromkeys(shot.name.rpartition("/")[0] for shot in survey.shots))
         shown = ", ".join(folders[:4]) + (", ..." if len(folders) > 4 else "")
         raise SimulationError(
-            f"no image of {survey.name} is in --subset {subset}; there are: {shown}"
+            f'no image of {survey.name} is in `subset="{subset}"`; there are: {shown}'
         )
     return chosen
 

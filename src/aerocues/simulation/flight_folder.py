@@ -33,12 +33,13 @@ class FlightFolder:
         self.truth = folder / TRUTH
         self._file = self.truth / KEYS
         if folder.exists() and not folder.is_dir():
-            raise SimulationError(f"{folder} is a file; give -o the name of a folder")
+            raise SimulationError(f"{folder} is a file; give the name of a folder as `output`")
         if folder.is_dir() and not self._file.is_file():
             others = [path.name for path in folder.iterdir() if path.name != TRUTH]
             if others:
                 raise SimulationError(
-                    f"{folder} holds other files ({others[0]}, ...); give -o a new or empty folder"
+                    f"{folder} holds other files ({others[0]}, ...); give a new or empty folder as "
+                    "`output`"
                 )
         self._keys: dict[str, str] = {}
         if self._file.is_file():

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -67,6 +68,10 @@ class Mission:
         return round((self.gsd or 0.0) / 100 * camera.focal_x, 6)
 
 
+FIELDS = tuple(field.name for field in fields(Mission))
+KNOWN = ", ".join(FIELDS)
+
+
 def plan(mission: Mission, camera: PinholeCamera, name: str = "mission") -> Survey:
     """The images of a mission."""
     height = mission.height(camera)
@@ -111,29 +116,34 @@ def _orbit(mission: Mission, height: float, ahead: float) -> Iterator[Pose]:
         yield Pose(north, east, -height, mission.pitch, (angle + 180.0) % 360.0)
 
 
-def open_survey(spec: str, camera: PinholeCamera) -> Survey:
-    """A survey by its name, or from a JSON file with the fields of `Mission`.
+def open_survey(
+    survey: str | Path | Mapping[str, object] | Mission, camera: PinholeCamera
+) -> Survey:
+    """A survey by its name, or of a mission: its JSON file, or the fields of `Mission`.
 
     Raises
     ------
     SimulationError
-        If it is neither, or the file is not a valid mission.
+        If it is none of them, or the terms of the mission make no sense.
     """
-    if spec.lower() in SURVEYS or not Path(spec).is_file():
-        return survey_called(spec)
-    return plan(_read_mission(Path(spec)), camera, Path(spec).stem)
+    if isinstance(survey, Mission):
+        return plan(survey, camera)
+    if isinstance(survey, Mapping):
+        return plan(_mission(survey, "the mission"), camera)
+    file = Path(survey)
+    if str(survey).lower() in SURVEYS or not file.is_file():
+        return survey_called(str(survey))
+    terms = read_json(file, "the mission", SimulationError, f"give a JSON file with {KNOWN}")
+    return plan(_mission(terms, str(file)), camera, file.stem)
 
 
-def _read_mission(file: Path) -> Mission:
-    names = [field.name for field in fields(Mission)]
-    known = ", ".join(names)
-    terms = read_json(file, "the mission", SimulationError, f"give a JSON file with {known}")
-    if not isinstance(terms, dict):
-        raise SimulationError(f"{file} is not a mission: it must be an object with {known}")
-    unknown = [name for name in terms if name not in names]
+def _mission(terms: Any, where: str) -> Mission:
+    if not isinstance(terms, Mapping):
+        raise SimulationError(f"{where} is not a mission: it must hold an object with {KNOWN}")
+    unknown = [str(name) for name in terms if name not in FIELDS]
     if unknown:
-        raise SimulationError(f"{file} has the unknown fields {', '.join(unknown)}; use {known}")
+        raise SimulationError(f"{where}: {', '.join(unknown)} is unknown; use {KNOWN}")
     try:
         return Mission(**terms)
     except (ValueError, TypeError) as error:
-        raise SimulationError(f"{file} is not a mission ({error}); use {known}") from error
+        raise SimulationError(f"{where} is not a mission ({error}); use {KNOWN}") from error

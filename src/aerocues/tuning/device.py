@@ -53,22 +53,31 @@ class Device:
         return add_metrics(scaled)
 
 
-def read_device(path: Path) -> Device:
-    """The device in a file of factors.
+def as_device(device: Device | Mapping[str, Any] | str | Path | None) -> Device | None:
+    """A device as it is, or that of factors or of a file of them; None stays.
 
     Raises
     ------
     SelectionError
         If the file cannot be read or has no factors.
     """
+    if device is None or isinstance(device, Device):
+        return device
+    if isinstance(device, Mapping):
+        return _device_of(device, "the device", "device")
+    path = Path(device)
     content = read_json(path, "the factors", SelectionError, _NEXT_STEP)
-    stages = content.get("stages") if isinstance(content, dict) else None
-    if not isinstance(stages, dict) or not all(_are_factors(stages.get(name)) for name in STAGES):
+    return _device_of(content, str(path), path.stem)
+
+
+def _device_of(content: Any, where: str, name: str) -> Device:
+    stages = content.get("stages") if isinstance(content, Mapping) else None
+    if not isinstance(stages, Mapping) or not all(_are_factors(stages.get(n)) for n in STAGES):
         raise SelectionError(
-            f"{path} is not a file of factors: it needs 'stages' with {', '.join(STAGES)}, each "
+            f"{where} does not hold factors: it needs 'stages' with {', '.join(STAGES)}, each "
             f"with positive numbers, one of them for '{ANY}'; {_NEXT_STEP}"
         )
-    return Device(str(content.get("machine", path.stem)), stages)
+    return Device(str(content.get("machine", name)), stages)
 
 
 def _are_factors(found: Any) -> bool:

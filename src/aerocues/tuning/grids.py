@@ -6,7 +6,7 @@ papers, from OpenCV's documentation and from the defaults of similar methods.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
@@ -170,6 +170,19 @@ GRIDS: tuple[Grid, ...] = (
         {"scale_factor": (0.75, 1.5, 5.0, 6.25)},
     ),
 )
+
+
+GridValues = Mapping[str, Sequence[Value]]
+"""Values of parameters to try, by name."""
+
+
+def as_grid(grid: GridValues | str | Path | None) -> dict[str, tuple[Value, ...]] | None:
+    """A grid as it is, or that of a JSON file; None stays."""
+    if grid is None:
+        return None
+    if isinstance(grid, str | Path):
+        return read_grid(Path(grid))
+    return {name: tuple(values) for name, values in grid.items()}
 
 
 def read_grid(path: Path) -> dict[str, tuple[Value, ...]]:

@@ -10,12 +10,13 @@ from itertools import groupby
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.context import run_facts
 from aerocues.evaluation.cost import estimate_pair_seconds
-from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.engine import Engine
 from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.planned_rows import PlannedRow, planned_table
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
+from aerocues.progress import Activity
 from aerocues.results.hashing import content_hash
 from aerocues.results.metrics import Row
 from aerocues.results.store import Store

@@ -3,104 +3,57 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
+from aerocues.arguments import check_choice, check_number, check_whole, seconds_of
+from aerocues.datasets.catalog import DatasetLike, open_dataset
 from aerocues.datasets.dataset import Dataset, Image, Pair
+from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
-from aerocues.evaluation.engine import Activity
-from aerocues.evaluation.run import Limits, local_engine
+from aerocues.evaluation.run import local_engine
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
-from aerocues.methods.selection import select
-from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.methods.selection import Patterns, select
+from aerocues.methods.strongest import keypoint_limit
+from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
-from aerocues.scoring.objectives import Objective, objective_named
+from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScorePreset, score_preset_named
-from aerocues.tuning.device import Device
+from aerocues.tuning.device import Device, as_device
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
-from aerocues.tuning.race import RaceOutcome, RaceSettings, Round, race
+from aerocues.tuning.race import RaceSettings, race
+from aerocues.tuning.race_progress import RaceProgress
 from aerocues.tuning.race_ranking import race_ranking
-from aerocues.tuning.representative import (
-    FEWEST_PAIRS,
-    MOST_PAIRS,
-    Seen,
-    find_overlap,
-    probes,
-    spread_pairs,
-)
+from aerocues.tuning.recommendation import Recommendation
+from aerocues.tuning.representative import FEWEST_PAIRS, find_overlap, probes, spread_pairs
 from aerocues.tuning.session import Session
-
-if TYPE_CHECKING:
-    import polars as pl
-
-BUDGET = 300.0
-SURE = 0.95
-
-
-class Follower:
-    """Told how a race goes on; the base says nothing."""
-
-    def hashing(self, done: int, total: int) -> None:
-        """`done` of `total` images have been read to tell whether they changed."""
-
-    def looking(self, pairs: int) -> None:
-        """It is looked which of so many pairs show the same things."""
-
-    def racing(self, combinations: int, pairs: int) -> None:
-        """The race begins."""
-
-    def round(self, finished: Round) -> None:
-        """A round is over."""
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        """What the workers are doing, several times a second."""
 
 
 @dataclass(frozen=True)
 class RaceOptions:
-    """What is raced for, and how long.
+    """What is raced for, and how long; see `recommend`."""
 
-    Parameters
-    ----------
-    budget : float
-        Wall seconds in all.
-    objective : str
-        A row of `scoring.objectives.OBJECTIVES`.
-    sure : float
-        Probability of the leader at which the race ends before the budget is spent.
-    pairs : int
-        Pairs that stand for all, at most.
-    seed : int
-    device : Device, optional
-        Whose times count; this machine's by default.
-    began : float, optional
-        From when on the budget counts, by `time.monotonic`; the call by default.
-    """
-
-    budget: float = BUDGET
+    budget: float = RACE_SECONDS
     objective: str = "balanced"
     sure: float = SURE
-    pairs: int = MOST_PAIRS
+    max_pairs: int = RACE_PAIRS
     seed: int = 0
     device: Device | None = None
-    began: float | None = None
 
     def __post_init__(self) -> None:
-        if self.budget <= 0:
-            raise SelectionError("--budget must be positive; give it such as 5min")
-        if not 0.5 <= self.sure <= 1:
-            raise SelectionError("--sure is a probability from 0.5 to 1; give it such as 0.95")
-        if self.pairs < FEWEST_PAIRS:
-            raise SelectionError("--max-pairs must be 2 or more: one pair says nothing of others")
+        check_choice("objective", self.objective, OBJECTIVES)
+        check_number("sure", self.sure, 0.5, 1.0)
+        check_whole("max_pairs", self.max_pairs, FEWEST_PAIRS)
+        check_whole("seed", self.seed, 0)
 
     def settings(self, objective: Objective, scoring: ScorePreset) -> RaceSettings:
         """Of the race itself."""
@@ -109,59 +62,23 @@ class RaceOptions:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Recommendation:
-    """What a race found.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        With the pairs that stood for all.
-    seen : Seen
-    candidates : int
-        Pairs of the whole data set.
-    objective : Objective
-    outcome : RaceOutcome
-    ranked : pl.DataFrame
-        One row a combination that was measured with success, the best first: ``combination,
-        score, probability, pairs, succeeded``, medians over its pairs of
-        ``precision_beyond_chance, excess_inliers, total_seconds`` and of the stages, one image
-        each: ``detect_seconds, describe_seconds, match_seconds, verify_seconds``.
-    combinations, measured : int
-        How many raced, and how many of them were measured at all.
-    folder : Path
-        With all that was measured.
-    machine : str
-        Whose times count.
-    """
-
-    dataset: Dataset
-    seen: Seen
-    candidates: int
-    objective: Objective
-    outcome: RaceOutcome
-    ranked: pl.DataFrame
-    combinations: int
-    measured: int
-    folder: Path
-    machine: str
-
-    @property
-    def best(self) -> str:
-        """The combination to take."""
-        return str(self.ranked["combination"][0])
-
-
 def recommend(
-    dataset: Dataset,
-    output: str | Path,
-    combinations: str | Iterable[str] | None = None,
+    dataset: DatasetLike,
+    combinations: Patterns | None = None,
+    output: str | Path | None = None,
     *,
-    options: RaceOptions | None = None,
+    budget: float | str = RACE_SECONDS,
+    objective: str = "balanced",
+    sure: float = SURE,
+    max_pairs: int = RACE_PAIRS,
+    max_width: int = RACE_WIDTH,
+    max_keypoints: int = FLIGHT_KEYPOINTS,
     preset: str | Preset = "default",
-    limit: KeypointLimit = ALL_KEYPOINTS,
-    limits: Limits | None = None,
-    follower: Follower | None = None,
+    device: Device | Mapping[str, Any] | str | Path | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    began: float | None = None,
+    progress: Progress | None = None,
 ) -> Recommendation:
     """Find the combination that suits images best, within a budget of time.
 
@@ -171,63 +88,94 @@ def recommend(
 
     Parameters
     ----------
-    dataset : Dataset
-    output : path
+    dataset : Dataset, str, path or sequence of paths
+        From `aerocues.open_dataset`, or what that would be given.
+    combinations : str, Combination or iterable of both, optional
+        Globs such as ``"ORB-*,SIFT-SIFT-*"`` or combinations; all meaningful ones by default.
+    output : path, optional
         Results folder, made or continued: an interrupted race goes on from there, and one that is
-        finished gives the same answer again.
-    combinations : str or iterable of str, optional
-        Globs; all meaningful ones by default.
-    options : RaceOptions, optional
+        finished gives the same answer again. By default ``NAME-race``, of the name of the dataset.
+    budget : float or str
+        Wall time in all: seconds, or a text such as ``"5min"``.
+    objective : {"balanced", "speed", "accuracy", "reconstruction", "robust"}
+        What the best is to be best for.
+    sure : float
+        Probability of the leader, 0.5 to 1, at which the race ends before the budget is spent.
+    max_pairs : int
+        How many pairs stand for all, at most; 2 or more.
+    max_width : int
+        Wider images are shrunk to this width in pixels; 0: none. A `Dataset` stays as it was
+        opened.
+    max_keypoints : int
+        The strongest keypoints that are kept in an image; 0 keeps all.
     preset : str or Preset
-        Of parameters.
-    limit : KeypointLimit
-        How many keypoints of an image are kept.
-    limits : Limits, optional
-        Workers, time and memory.
-    follower : Follower, optional
-        Told how it goes on.
+        Parameters of the methods.
+    device : Device, mapping or path, optional
+        Machine whose times count: ``compare([here, there]).factors()``, or a file of them; this one
+        by default.
+    seed : int
+        Of all that is random.
+    workers : int, optional
+        Processes at a time; as many as there are cores by default.
+    began : float, optional
+        From when on the budget counts, by `time.monotonic`; the call by default.
+    progress : callable, optional
+        Called with each `aerocues.Event`.
+
+    Returns
+    -------
+    Recommendation
 
     Raises
     ------
     AerocuesError
-        If the images show nothing in common, nothing succeeds, or budget or choice are too small.
+        If an argument makes no sense, the images show nothing in common, nothing succeeds, or
+        budget or choice are too small.
     """
-    options, follower = options or RaceOptions(), follower or Follower()
-    began = time.monotonic() if options.began is None else options.began
-    objective, parts = objective_named(options.objective), as_preset(preset)
-    pairs = spread_pairs(dataset.pairs, options.pairs, options.seed)
+    began = time.monotonic() if began is None else began
+    seconds, machine = seconds_of("budget", budget), as_device(device)
+    options = RaceOptions(seconds, objective, sure, max_pairs, seed, machine)
+    limit, parts = keypoint_limit(max_keypoints), as_preset(preset)
+    engine_here = local_engine("estimated", workers)
+    if not isinstance(dataset, Dataset):
+        dataset = open_dataset(dataset, max_width=max_width)
+    pairs = spread_pairs(dataset.pairs, max_pairs, seed)
     part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
-    context = make_context(part, parts, seed=options.seed, timing="estimated", limit=limit)
+    context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
-    store = Store.create(Path(output))
-    engine_here = local_engine(limits or Limits(), "estimated")
+    store = Store.create(Path(output or f"{dataset.name}-race"))
+    tell = RaceProgress(progress, seconds)
     with store.writing(), engine_here.standing(context) as engine:
-        evaluators = _evaluators(context, chosen, store, parts, follower.hashing)
-        journal = Journal.read(store.folder, _key(evaluators, chosen, options), options.budget)
-        session = Session(journal, began=began, watch=follower.working)
-        follower.looking(len(pairs))
+        evaluators = _evaluators(context, chosen, store, parts, tell.read)
+        journal = Journal.read(store.folder, _key(evaluators, chosen, options), seconds)
+        session = Session(journal, began=began, watch=tell.watch)
+        tell.looking(len(pairs))
         with engine_here.standing(evaluators.overlap.context) as other:
             own = engine if evaluators.overlap is evaluators.race else other
-            seen = find_overlap(evaluators.overlap, own, pairs, session, options.seed)
-        follower.racing(len(chosen), len(seen.overlapping))
-        scoring = score_preset_named("default" if parts.chance_test else "thesis")
-        criteria = criteria_named(objective.criteria(scoring.criteria))
+            seen = find_overlap(evaluators.overlap, own, pairs, session, seed)
+        tell.racing(len(chosen), len(seen.overlapping))
+        aim, scoring = OBJECTIVES[objective], score_preset_named(_scoring_of(parts))
+        criteria = criteria_named(aim.criteria(scoring.criteria))
         evaluator = ImageEvaluator(
-            evaluators.race, engine, chosen, seen.overlapping, criteria, session, options.device
+            evaluators.race, engine, chosen, seen.overlapping, criteria, session, machine
         )
-        outcome = race(evaluator, options.settings(objective, scoring), follower.round)
+        outcome = race(evaluator, options.settings(aim, scoring), tell.round)
     return Recommendation(
         part,
         seen,
         len(dataset.pairs),
-        objective,
+        aim,
         outcome,
-        race_ranking(evaluators.race, chosen, seen.overlapping, outcome, options.device),
+        race_ranking(evaluators.race, chosen, seen.overlapping, outcome, machine),
         len(chosen),
         int(outcome.known.any(axis=1).sum()),
         store.folder,
-        options.device.name if options.device else context.machine,
+        machine.name if machine else context.machine,
     )
+
+
+def _scoring_of(preset: Preset) -> str:
+    return "default" if preset.chance_test else "thesis"
 
 
 def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:
@@ -235,7 +183,7 @@ def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:
     return [image for image in dataset.images if image.name in names]
 
 
-def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[Combination]:
+def _chosen(context: Context, combinations: Patterns | None) -> list[Combination]:
     # One that some pairs rule out cannot be compared on all of them.
     gray = any(image.source.is_gray() for image in context.dataset.images)
     descriptors = context.methods.descriptors
@@ -245,7 +193,7 @@ def _chosen(context: Context, combinations: str | Iterable[str] | None) -> list[
         if not (gray and descriptors[each.descriptor].needs_colour)
     ]
     if len(chosen) < 2:
-        raise SelectionError("a race needs two combinations; let --combinations choose more")
+        raise SelectionError("a race needs two combinations; let `combinations` choose more")
     return chosen
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from aerocues.datasets.dataset import Pair
+from aerocues.defaults import RACE_PAIRS
 from aerocues.errors import DatasetError
 from aerocues.evaluation.engine import Engine
 from aerocues.methods.combination import Combination
@@ -15,8 +16,6 @@ from aerocues.tuning.layout import blocks_of, spread_order
 from aerocues.tuning.pair_evaluator import PairEvaluator
 from aerocues.tuning.session import Session
 
-# More pairs represent the dataset better, and leave time to measure fewer combinations on each.
-MOST_PAIRS = 24
 # One pair says too little about the others.
 FEWEST_PAIRS = 2
 # Strong combinations of different kinds that run fast; a pair on which all fail has no overlap.
@@ -41,7 +40,7 @@ class Seen:
     unseen: tuple[int, ...] = ()
 
 
-def spread_pairs(pairs: Sequence[Pair], most: int = MOST_PAIRS, seed: int = 0) -> list[Pair]:
+def spread_pairs(pairs: Sequence[Pair], most: int = RACE_PAIRS, seed: int = 0) -> list[Pair]:
     """At most `most` pairs, evenly spread; each sequence contributes in proportion to its size.
 
     Every sequence keeps at least one pair. If there are more than `most` sequences, one of each
@@ -171,12 +170,12 @@ def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
     if statuses and all(status == "no_keypoints" for status in statuses):
         return (
             "the images are blank: neither SIFT nor GFTT_H nor AKAZE finds a keypoint in any pair; "
-            "check exposure and files, or try --equalize clahe"
+            'check exposure and files, or try `equalize="clahe"`'
         )
     if statuses and all(status == "error" for status in statuses):
         return f"no pair could be measured: {messages[0] if messages else 'unknown error'}"
     return (
         f"the images of the {len(pairs)} tested pairs do not overlap: none of "
         f"{', '.join(PROBES)} finds a model better than chance; check that the pairs overlap, or "
-        "choose others with --pairs exhaustive or gps"
+        'choose others with `pairs="exhaustive"` or `pairs="gps"`'
     )

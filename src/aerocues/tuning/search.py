@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.engine import Engine
+from aerocues.progress import Activity
 from aerocues.results.metrics import Row
 from aerocues.tuning.grids import Setting
 from aerocues.tuning.image_evaluator import criterion_values, rows_frame

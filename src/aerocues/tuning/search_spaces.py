@@ -183,7 +183,7 @@ def search_spaces_of(
     wanted = text.strip().upper()
     if grid is not None and ("-" in wanted or wanted.rpartition(":")[2] == EVERYTHING):
         raise SelectionError(
-            f"--grid holds values for one method, and {text.strip()} is several; name a detector "
+            f"`grid` holds values for one method, and {text.strip()} is several; name a detector "
             "or a descriptor, such as detector:ORB"
         )
     if "-" in wanted:
@@ -193,7 +193,7 @@ def search_spaces_of(
     else:
         found = [each for row in _rows(wanted) for each in _of_grid(row, methods)]
     if not found:
-        raise SelectionError(f"nothing is known to try for {text}; give values with --grid FILE")
+        raise SelectionError(f"nothing is known to try for {text}; give values as `grid`")
     return found
 
 
@@ -208,7 +208,7 @@ def _rows(wanted: str) -> list[Grid]:
         known = ", ".join(dict.fromkeys(row.method for row in GRIDS))
         raise SelectionError(
             f"nothing is known to try for {wanted}; there are grids for {known}, and 'all'; for "
-            "other methods give values with --grid FILE"
+            "other methods give values as `grid`"
         )
     return rows
 

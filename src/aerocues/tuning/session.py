@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Sequence
 
 from aerocues.errors import SelectionError
-from aerocues.evaluation.engine import Activity, Engine
+from aerocues.evaluation.engine import Engine
+from aerocues.progress import Activity
 from aerocues.tuning.journal import Journal, Step
 from aerocues.tuning.pair_evaluator import Measurement, PairEvaluator
 
@@ -105,10 +106,10 @@ class Session:
         wanted = MORE * max(self.budget, self.spent)
         enough = next((each for each in BUDGETS if each >= wanted), round(wanted))
         return SelectionError(
-            f"a budget of {self.budget:g} s is too small: {why}; give --budget {_typed(enough)}"
+            f'a budget of {self.budget:g} s is too small: {why}; give `budget="{_typed(enough)}"`'
         )
 
 
 def _typed(seconds: int) -> str:
-    """As ``--budget`` takes it."""
+    """As ``budget`` takes it."""
     return f"{-(-seconds // 60)}min" if seconds >= 60 else f"{seconds}s"

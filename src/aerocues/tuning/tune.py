@@ -3,78 +3,70 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from aerocues.arguments import check_whole, seconds_of
+from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset
+from aerocues.defaults import TUNING_PAIRS
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
-from aerocues.evaluation.engine import Activity
-from aerocues.evaluation.run import Limits, local_engine
+from aerocues.evaluation.run import local_engine
 from aerocues.evaluation.unit import Context
-from aerocues.methods.parameters import Value
+from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.preset_files import place_for_preset, write_preset
 from aerocues.methods.presets import Preset, preset_named
-from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
+from aerocues.methods.registry import Methods
+from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit, keypoint_limit
+from aerocues.progress import Progress
 from aerocues.results.store import Store
 from aerocues.results.versions import machine_name, software_versions
+from aerocues.tuning.grids import GridValues, as_grid
 from aerocues.tuning.pair_evaluator import PairEvaluator
-from aerocues.tuning.search import Finding, Search, TuningDataset
+from aerocues.tuning.search import FEWEST_PAIRS, Finding, Search, TuningDataset
 from aerocues.tuning.search_objective import CUES, search_objective
+from aerocues.tuning.search_progress import SearchProgress
 from aerocues.tuning.search_spaces import SearchSpace, search_spaces_named
 from aerocues.tuning.splits import Split, given_split, split_pairs
-
-PAIRS = 16
-
-
-class Listener:
-    """Told how a search goes on; the base says nothing."""
-
-    def hashing(self, done: int, total: int) -> None:
-        """`done` of `total` images have been read."""
-
-    def begins(self, space: SearchSpace, number: int, total: int) -> None:
-        """A search begins."""
-
-    def found(self, finding: Finding) -> None:
-        """A search is over."""
-
-    def working(self, activities: Sequence[Activity]) -> None:
-        """What the workers are doing, several times a second."""
 
 
 @dataclass(frozen=True)
 class TuneOptions:
-    """How parameters are searched.
-
-    Parameters
-    ----------
-    objective : str
-        ``cues`` or the name of a criterion.
-    pairs : int
-        Pairs to choose by, and as many to judge by, of all data sets together.
-    seed : int
-    budget : float
-        Wall seconds; what is not finished then stays at its default.
-    limit : KeypointLimit
-        How many keypoints of an image are kept: what is equal for all candidates.
-    """
+    """How parameters are searched; see `tune`."""
 
     objective: str = CUES
-    pairs: int = PAIRS
+    max_pairs: int = TUNING_PAIRS
     seed: int = 0
-    budget: float = float("inf")
+    budget: float = math.inf
     limit: KeypointLimit = ALL_KEYPOINTS
+
+    def __post_init__(self) -> None:
+        check_whole("max_pairs", self.max_pairs, FEWEST_PAIRS)
+        check_whole("seed", self.seed, 0)
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """The preset that was written, and what each search found."""
+    """What tuning found.
+
+    Parameters
+    ----------
+    preset : Preset
+        What pays, as it was written.
+    findings : list of Finding
+        How each search ended.
+    splits : list of Split
+        Pairs to choose by and to judge by, of each dataset.
+    folder : Path
+        With all that was measured.
+    """
 
     preset: Preset
     findings: list[Finding]
@@ -83,16 +75,20 @@ class Tuned:
 
 
 def tune(
-    names: Sequence[str],
-    datasets: Sequence[Dataset],
+    dataset: DatasetLike | Sequence[DatasetLike],
+    methods: str | Iterable[str],
     output: str | Path,
     *,
-    validation: Sequence[Dataset] = (),
-    grid: Mapping[str, tuple[Value, ...]] | None = None,
-    options: TuneOptions | None = None,
+    validation: DatasetLike | Sequence[DatasetLike] = (),
+    grid: GridValues | str | Path | None = None,
+    objective: str = CUES,
+    max_pairs: int = TUNING_PAIRS,
+    max_keypoints: int = 0,
+    budget: float | str | None = None,
+    seed: int = 0,
     results: str | Path | None = None,
-    limits: Limits | None = None,
-    listener: Listener | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
 ) -> Tuned:
     """Search parameters and write those that pay as a preset.
 
@@ -103,75 +99,103 @@ def tune(
 
     Parameters
     ----------
-    names : sequence of str
-        See `search_spaces.search_spaces_named`.
-    datasets : sequence of Dataset
+    dataset : Dataset, str, path, or sequence of them
+        From `aerocues.open_dataset`, or what that would be given; a sequence is of several
+        datasets.
+    methods : str or iterable of str
+        Methods such as ``"LATCH"`` or ``"detector:ORB"``, combinations, or ``"all"``; a text is
+        split at its commas.
     output : path
         File of the preset.
-    validation : sequence of Dataset
-        To judge by; where there are none, some scenes of `datasets` are kept for that.
-    grid : mapping, optional
-        Values of parameters to try, in place of the default ones; for one method.
-    options : TuneOptions, optional
+    validation : Dataset, str, path, or sequence of them
+        To judge by; where there are none, some scenes of `dataset` are kept for that.
+    grid : mapping or path, optional
+        Values of parameters to try, such as ``{"threshold": [5, 10, 20]}``, in place of the
+        default ones; for one method.
+    objective : str
+        ``cues`` or the name of a criterion.
+    max_pairs : int
+        Pairs to choose by, and as many to judge by, of all datasets together; 3 or more.
+    max_keypoints : int
+        The strongest keypoints that are kept in an image, the same for all candidates; 0: all.
+    budget : float or str, optional
+        Wall time: seconds, or a text such as ``"30min"``. What is not finished then stays at its
+        default.
+    seed : int
+        Of all that is random.
     results : path, optional
         Folder of the measurements, made or continued; beside `output` by default.
-    limits : Limits, optional
-        Workers, time and memory.
-    listener : Listener, optional
-        Told how it goes on.
+    workers : int, optional
+        Processes at a time; as many as there are cores by default.
+    progress : callable, optional
+        Called with each `aerocues.Event`.
+
+    Returns
+    -------
+    Tuned
 
     Raises
     ------
     AerocuesError
-        If a name or an option makes no sense, or the images do not allow a split.
+        If a name or an argument makes no sense, or the images do not allow a split.
     """
     began = time.monotonic()
-    options, listener = options or TuneOptions(), listener or Listener()
-    file, methods = Path(output), installed_methods()
-    objective = search_objective(options.objective)
-    spaces = search_spaces_named(names, methods, grid)
-    every = _named_apart([*datasets, *validation])
-    datasets, validation = every[: len(datasets)], every[len(datasets) :]
+    seconds = math.inf if budget is None else seconds_of("budget", budget)
+    options = TuneOptions(objective, max_pairs, seed, seconds, keypoint_limit(max_keypoints))
+    engine = local_engine("estimated", workers)
+    file, installed = Path(output), installed_methods()
+    names = methods.split(",") if isinstance(methods, str) else methods
+    spaces = search_spaces_named([name for name in names if name.strip()], installed, as_grid(grid))
+    aim = search_objective(objective)
     place_for_preset(file)
+    training, judging = _opened(dataset), _opened(validation)
+    every = _named_apart([*training, *judging])
+    training, judging = every[: len(training)], every[len(training) :]
     splits = (
-        given_split(datasets, validation, options.pairs)
-        if validation
-        else split_pairs(datasets, options.seed, options.pairs)
+        given_split(training, judging, max_pairs)
+        if judging
+        else split_pairs(training, seed, max_pairs)
     )
-    base = preset_named("default")
-    folder = Path(results) if results else file.with_name(f"{file.stem}-search")
-    store = Store.create(folder)
+    store = Store.create(Path(results) if results else file.with_name(f"{file.stem}-search"))
+    tell, base = SearchProgress(progress, len(spaces)), preset_named("default")
     with store.writing(), contextlib.ExitStack() as engines:
         searched = []
-        for dataset, split in zip(every, splits, strict=True):
-            context = _context(_part(dataset, split), base, spaces, options)
-            asked = dict.fromkeys(
-                space.variant(number) for space in spaces for number in range(len(space.settings))
-            )
-            evaluator = PairEvaluator(context, list(asked), store, base, listener.hashing)
-            engine = local_engine(limits or Limits(), "estimated")
-            searched.append(
-                TuningDataset(evaluator, engines.enter_context(engine.standing(context)), split)
-            )
-        search = Search(
-            searched,
-            objective,
-            options.seed,
-            began + options.budget,
-            listener.working,
-        )
+        for each, split in zip(every, splits, strict=True):
+            context = _context(_part(each, split), base, spaces, options)
+            evaluator = PairEvaluator(context, _variants(spaces), store, base, tell.read)
+            own = engines.enter_context(engine.standing(context))
+            searched.append(TuningDataset(evaluator, own, split))
+        search = Search(searched, aim, seed, began + seconds, tell.watch)
         findings = []
-        for number, space in enumerate(spaces, start=1):
-            listener.begins(space, number, len(spaces))
+        for space in spaces:
             findings.append(search.run(space))
-            listener.found(findings[-1])
-    preset = Preset(file.stem, "parameters found by aerocues tune", chance_test=True)
+            tell.found(findings[-1])
+    preset = _paying(findings, file.stem, installed)
+    write_preset(file, preset, _made(every, splits, options, findings))
+    return Tuned(preset, findings, splits, store.folder)
+
+
+def _opened(datasets: DatasetLike | Sequence[DatasetLike]) -> list[Dataset]:
+    """The datasets; a sequence is of several."""
+    if isinstance(datasets, Dataset | str | Path):
+        return [as_dataset(datasets)]
+    return [as_dataset(each) for each in datasets]
+
+
+def _variants(spaces: Sequence[SearchSpace]) -> list[Combination]:
+    """All candidates of all spaces."""
+    numbered = ((space, number) for space in spaces for number in range(len(space.settings)))
+    return list(dict.fromkeys(space.variant(number) for space, number in numbered))
+
+
+def _paying(findings: Sequence[Finding], name: str, methods: Methods) -> Preset:
+    """The preset of what pays."""
+    preset = Preset(name, "parameters found by aerocues tune", chance_test=True)
     for finding in findings:
         if finding.pays:
             preset = finding.space.applied(preset, finding.best, methods)
     preset.check(methods.detectors, methods.descriptors)
-    write_preset(file, preset, _made(every, splits, options, findings))
-    return Tuned(preset, findings, splits, folder)
+    return preset
 
 
 def _named_apart(datasets: Sequence[Dataset]) -> list[Dataset]:

@@ -1,11 +1,10 @@
-"""What is told while models are made."""
+"""The progress of a reconstruction."""
 
 from __future__ import annotations
 
-import pytest
-
-from aerocues.cli.reconstruction_progress import Reporter, summary
 from aerocues.methods.combination import Combination
+from aerocues.progress import Event
+from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress, summary
 
 METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
 MADE = {
@@ -27,15 +26,25 @@ def test_a_model_in_one_line() -> None:
     assert summary({"status": "no_model", "message": None}) == "no_model"
 
 
-def test_plain_lines_count_what_is_there(capsys: pytest.CaptureFixture[str]) -> None:
-    reporter = Reporter()
-    reporter.preparing(1, 2)
-    reporter.left_out([Combination.parse("ORB-LUCID-HAM-BF")], "images are gray")
-    reporter.planned(3, 1)
-    reporter.working([])
-    reporter.finished({**METHODS, **MADE, "status": "ok"})
-    assert capsys.readouterr().err.splitlines() == [
+def test_events_count_what_is_there() -> None:
+    events: list[Event] = []
+    tell = ReconstructionProgress(events.append)
+    tell.read(1, 2)
+    tell.left_out([Combination.parse("ORB-LUCID-HAM-BF")], "images are gray")
+    tell.planned(3, 1)
+    tell.watch([])
+    tell.finished({**METHODS, **MADE, "status": "ok"})
+    assert [(event.stage, event.done, event.total) for event in events] == [
+        ("reading images", 1, 2),
+        ("reconstructing", 0, 0),
+        ("reconstructing", 1, 3),
+        ("reconstructing", 1, 3),
+        ("reconstructing", 2, 3),
+    ]
+    assert [event.message for event in events if event.message] == [
         "left out: 1 combination, because images are gray",
         "1 of 3 models already exist",
         "2 of 3  ORB-ORB-HAM-BF  ok: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m",
     ]
+    assert [row["status"] for row in events[-1].rows] == ["ok"]
+    assert events[-1].share == 0.5

@@ -1,0 +1,74 @@
+"""What a reconstruction tells while it works."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aerocues.methods.combination import Combination
+from aerocues.phrases import count
+from aerocues.progress import Activity, Progress, StageProgress
+from aerocues.results.metrics import Row
+
+
+class ReconstructionProgress:
+    """Turns what happens into events.
+
+    Parameters
+    ----------
+    progress : callable or None
+        Called with each event.
+    """
+
+    def __init__(self, progress: Progress | None) -> None:
+        self._reading = StageProgress(progress, "reading images", "images")
+        self._making = StageProgress(progress, "reconstructing", "models")
+        self._done = self._total = self._present = 0
+        self.read = self._reading.count
+
+    def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
+        """The images rule out some of the combinations."""
+        what = count(len(combinations), "combination")
+        self._making.tell(message=f"left out: {what}, because {reason}")
+
+    def planned(self, total: int, present: int) -> None:
+        """`total` combinations are to be there, `present` of which are."""
+        self._done, self._total, self._present = present, total, present
+        there = f"{present} of {total} models are there already" if present else ""
+        self._making.tell(done=present, total=total, message=there)
+
+    def watch(self, activities: Sequence[Activity]) -> None:
+        """What the processes are doing."""
+        self._making.watch(activities)
+
+    def finished(self, row: Row) -> None:
+        """A combination is finished and stored."""
+        self._done += 1
+        name = "-".join(str(row[part]) for part in ("detector", "descriptor", "norm", "matcher"))
+        self._making.tell(
+            done=self._done,
+            share=(self._done - self._present) / (self._total - self._present),
+            message=f"{self._done} of {self._total}  {name}  {summary(row)}",
+            rows=(row,),
+        )
+
+    def without_reference(self, reference: Combination, reason: str) -> None:
+        """The reference has no model: there are no distances between clouds."""
+        self._making.tell(
+            message=f"no distances between clouds: {reference} has no model ({reason})"
+        )
+
+
+def summary(row: Row) -> str:
+    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or the status of a failure alone.
+
+    The reasons, which may be long, stand in the table.
+    """
+    parts = []
+    if row.get("registered_images"):
+        parts.append(f"{row['registered_images']} of {row['images']} images")
+        parts.append(f"{row['points_3d']:,} points")
+        if row.get("reprojection_error") is not None:
+            parts.append(f"{row['reprojection_error']:.2f} px")
+        if row.get("position_rmse") is not None:
+            parts.append(f"{row['position_rmse']:.1f} m")
+    return f"{row['status']}: {', '.join(parts)}" if parts else str(row["status"])

@@ -1,0 +1,58 @@
+"""What a race found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.scoring.objectives import Objective
+from aerocues.tuning.race import RaceOutcome
+from aerocues.tuning.representative import Seen
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+@dataclass(frozen=True, eq=False)
+class Recommendation:
+    """What a race found.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With the pairs that stood for all.
+    seen : Seen
+    candidates : int
+        Pairs of the whole data set.
+    objective : Objective
+    outcome : RaceOutcome
+    ranked : pl.DataFrame
+        One row a combination that was measured with success, the best first: ``combination,
+        score, probability, pairs, succeeded``, medians over its pairs of
+        ``precision_beyond_chance, excess_inliers, total_seconds`` and of the stages, one image
+        each: ``detect_seconds, describe_seconds, match_seconds, verify_seconds``.
+    combinations, measured : int
+        How many raced, and how many of them were measured at all.
+    folder : Path
+        With all that was measured.
+    machine : str
+        Whose times count.
+    """
+
+    dataset: Dataset
+    seen: Seen
+    candidates: int
+    objective: Objective
+    outcome: RaceOutcome
+    ranked: pl.DataFrame
+    combinations: int
+    measured: int
+    folder: Path
+    machine: str
+
+    @property
+    def best(self) -> str:
+        """The combination to take."""
+        return str(self.ranked["combination"][0])

@@ -1,0 +1,139 @@
+"""Methods that a program registers without packaging them."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from aerocues.errors import MethodUnavailableError, SelectionError
+from aerocues.methods import plugins
+from aerocues.methods.plugins import installed_methods, register, register_class
+from aerocues.methods.registry import opencv_methods
+from aerocues.methods.selection import select
+
+CODE = """
+import numpy as np
+
+from aerocues.methods.arrays import Features, Keypoints, Matches
+
+
+class Corners:
+    def detect(self, image):
+        return Keypoints.from_xy(np.zeros((0, 2)))
+
+
+class Pixels:
+    dtype = "float32"
+    parameters = {"radius": 2}
+
+    def __init__(self, radius):
+        self.radius = radius
+
+    def describe(self, image, keypoints):
+        return Features(keypoints, np.zeros((len(keypoints), 4), np.float32))
+
+
+class Both:
+    name = "corner_pixels"
+    dtype = "float32"
+
+    def extract(self, image):
+        return Features(Keypoints.from_xy(np.zeros((0, 2))), np.zeros((0, 4), np.float32))
+
+
+class None_:
+    dtypes = {"L2": ("float32",)}
+
+    def match(self, features_1, features_2, norm):
+        return Matches()
+
+
+class Odd:
+    dtype = "float64"
+
+
+def made():
+    return Corners()
+"""
+
+
+@pytest.fixture
+def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The name of a module that can be imported; what it registers is forgotten again."""
+    monkeypatch.setattr(plugins, "_REGISTERED", {})
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "own_methods.py").write_text(CODE)
+    importlib.invalidate_caches()
+    yield "own_methods"
+    sys.modules.pop("own_methods", None)
+
+
+def test_each_kind_is_listed_and_combined(module: str) -> None:
+    register("detector", "corners", f"{module}:Corners")
+    register("descriptor", "PIXELS", f"{module}:Pixels")
+    register("matcher", "NOTHING", f"{module}:None_")
+    register("extractor", "BOTH", f"{module}:Both")
+    methods = installed_methods()
+    assert methods.descriptors["PIXELS"].parameters == {"radius": 2}
+    assert methods.descriptors["PIXELS"].factory == "own_methods:Pixels"
+    assert "CORNERS" in methods.detectors
+    assert [str(each) for each in select(methods, "CORNERS-PIXELS-L2-NOTHING,BOTH-BOTH-*-BF")] == [
+        "CORNERS-PIXELS-L2-NOTHING",
+        "BOTH-BOTH-L2-BF",
+    ]
+    assert methods.problems == ()
+
+
+def test_a_class_of_a_module_stands_for_its_name(module: str) -> None:
+    register("detector", "CORNERS", importlib.import_module(module).Corners)
+    assert installed_methods().detectors["CORNERS"].factory == "own_methods:Corners"
+    with pytest.raises(MethodUnavailableError, match="mymodule"):
+        register("detector", "CORNERS", type("Corners", (), {"__module__": "__main__"}))
+
+
+def test_changed_source_makes_another_method(module: str, tmp_path: Path) -> None:
+    register("descriptor", "PIXELS", f"{module}:Pixels")
+    before = installed_methods().descriptors["PIXELS"].origin
+    register("descriptor", "PIXELS", f"{module}:Pixels")
+    assert installed_methods().descriptors["PIXELS"].origin == before
+    (tmp_path / "own_methods.py").write_text(f"{CODE}\n# faster\n")
+    register("descriptor", "PIXELS", f"{module}:Pixels")
+    assert installed_methods().descriptors["PIXELS"].origin != before
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "method", "error"),
+    [
+        ("detectors", "CORNERS", "own_methods:Corners", SelectionError),
+        ("detector", "my-corners", "own_methods:Corners", SelectionError),
+        ("descriptor", "SIFT", "own_methods:Pixels", SelectionError),
+        ("matcher", "EXACT", "own_methods:None_", SelectionError),
+        ("extractor", "VGG", "own_methods:Both", SelectionError),
+        ("detector", "CORNERS", "own_methods:Missing", MethodUnavailableError),
+        ("detector", "CORNERS", "missing_module:Corners", MethodUnavailableError),
+        ("detector", "CORNERS", "no reference", MethodUnavailableError),
+        ("descriptor", "ODD", "own_methods:Odd", MethodUnavailableError),
+    ],
+)
+def test_what_cannot_be_registered_is_refused(
+    module: str, kind: str, name: str, method: str, error: type[Exception]
+) -> None:
+    with pytest.raises(error):
+        register(kind, name, method)
+    assert installed_methods() == opencv_methods()
+
+
+def test_a_plug_in_of_the_command_line_tells_its_kind_and_name(module: str) -> None:
+    for name in ("Corners", "Pixels", "Both", "None_"):
+        register_class(f"{module}:{name}")
+    methods = installed_methods()
+    assert {"CORNERS", "CORNER_PIXELS"} <= set(methods.detectors)
+    assert {"PIXELS", "CORNER_PIXELS"} <= set(methods.descriptors)
+    assert "NONE_" in methods.matchers
+    for reference in (f"{module}:made", f"{module}:Missing", "missing_module:X", "a b"):
+        with pytest.raises(MethodUnavailableError):
+            register_class(reference)
