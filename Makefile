@@ -17,12 +17,18 @@ DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZ
 	)ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,AGAST-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,$(\
 	)GFTT_H-TEBLID-HAM-BF,STAR-LATCH-HAM-BF,MSER-SIFT-L2-BF
 
+# Modules are compiled when they are first imported: most of them never are.
+PIP := $(BIN)/python -m pip
+INSTALL := install --quiet --no-compile --no-deps
+
+# Neighbours, which share fixtures and compiled code, go to one process; one that is done early helps out.
+TWO_PROCESSES := -n 2 --dist worksteal
+
 # Extra arguments for pytest, for instance: make test PYTEST_ARGUMENTS="-k synthetic"
 PYTEST_ARGUMENTS :=
 
 OLDEST_VENV := .venv-oldest
 OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
-OLDEST_TOOLS := pytest|pytest-timeout|pytest-xdist|hypothesis|pillow|psutil|numba|llvmlite
 OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
 
 LIGHT_VENV := .venv-light
@@ -44,8 +50,8 @@ $(BIN)/python:
 	"$$python" -m venv $(VENV)
 
 $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	$(PIP) $(INSTALL) --require-hashes -r requirements.lock
+	$(PIP) $(INSTALL) --no-build-isolation -e .
 	@touch $@
 
 demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (2 to 3 minutes)
@@ -55,29 +61,30 @@ demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of
 	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)
 
 test: setup ## the fast tests
-	$(BIN)/pytest -n 2 -m "not slow" $(PYTEST_ARGUMENTS)
+	$(BIN)/pytest $(TWO_PROCESSES) -m "not slow" $(PYTEST_ARGUMENTS)
 
 test-slow: setup ## the tests that take more than a few seconds each
-	$(BIN)/pytest -m slow $(PYTEST_ARGUMENTS)
+	$(BIN)/pytest $(TWO_PROCESSES) -m slow $(PYTEST_ARGUMENTS)
 
 test-oldest-opencv: $(OLDEST_INSTALLED) ## the tests of the methods with the oldest supported OpenCV
-	$(OLDEST_VENV)/bin/pytest tests/methods -n 2 -m "not slow" $(PYTEST_ARGUMENTS)
+	$(OLDEST_VENV)/bin/python -m pytest $(TWO_PROCESSES) tests/methods -m "not slow" $(PYTEST_ARGUMENTS)
 
+# What is not installed in it comes from the usual environment.
 $(OLDEST_INSTALLED): $(INSTALLED)
-	$(BIN)/python -m venv --clear $(OLDEST_VENV)
-	$(OLDEST_VENV)/bin/python -m pip install --quiet $(OLDEST_OPENCV) \
-		$$(sed -nE 's/^(($(OLDEST_TOOLS))==[^ ]+).*/\1/p' requirements.lock)
-	@echo "$(CURDIR)/src" > "$$($(OLDEST_VENV)/bin/python -c 'import site; print(site.getsitepackages()[0])')/aerocues.pth"
+	$(BIN)/python -m venv --clear --without-pip $(OLDEST_VENV)
+	$(PIP) --python $(OLDEST_VENV)/bin/python $(INSTALL) $(OLDEST_OPENCV)
+	@site() { $$1/bin/python -c 'import site; print(site.getsitepackages()[0])'; }; \
+		printf '%s\n' "$$(site $(VENV))" "$(CURDIR)/src" > "$$(site $(OLDEST_VENV))/usual.pth"
 	@touch $@
 
 test-light: $(LIGHT_INSTALLED) ## the light install for boards: what it can, and that it says what it cannot
-	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir $(LIGHT_VENV)/wheel .
-	$(LIGHT_VENV)/bin/python -m pip install --quiet --no-deps --no-index --force-reinstall $(LIGHT_VENV)/wheel/*.whl
+	$(PIP) wheel --quiet --no-deps --no-build-isolation --wheel-dir $(LIGHT_VENV)/wheel .
+	$(PIP) --python $(LIGHT_VENV)/bin/python $(INSTALL) --no-index --force-reinstall $(LIGHT_VENV)/wheel/*.whl
 	AEROCUES_LIGHT_PYTHON=$(CURDIR)/$(LIGHT_VENV)/bin/python $(BIN)/pytest tests/cli/test_light_install.py $(PYTEST_ARGUMENTS)
 
 $(LIGHT_INSTALLED): requirements-light.lock $(INSTALLED)
-	$(BIN)/python -m venv --clear $(LIGHT_VENV)
-	$(LIGHT_VENV)/bin/python -m pip install --quiet --no-deps --require-hashes -r requirements-light.lock
+	$(BIN)/python -m venv --clear --without-pip $(LIGHT_VENV)
+	$(PIP) --python $(LIGHT_VENV)/bin/python $(INSTALL) --require-hashes -r requirements-light.lock
 	@touch $@
 
 lint: setup lint-page ## style, types (of the page's JavaScript, too) and the direction of imports

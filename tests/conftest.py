@@ -43,7 +43,12 @@ def views(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests that use the fixture `shared_data`, so that `-m` can select them."""
+    """Mark the tests that use the fixture `shared_data`, so that `-m` can select them.
+
+    The tests of simulated flights come first: neighbours go to one of several processes, and each
+    would take half a minute to compile what renders.
+    """
     for item in items:
         if "shared_data" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.shared_data)
+    items.sort(key=lambda item: {"airsim", "simulation"}.isdisjoint(item.path.parts))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +10,8 @@ import polars as pl
 import pytest
 
 from aerocues.cli.cluster import machine_lines
+from aerocues.cli.progress import PlainLines
+from aerocues.progress import Event
 from tests.cli.conftest import Call
 from tests.evaluation.cluster import Cluster
 
@@ -98,17 +99,24 @@ def test_a_run_on_a_cluster(call: Call, photos: Path, output: Path, cluster: Clu
 
 @pytest.mark.slow
 def test_a_missing_resource_is_told(
-    call: Call, photos: Path, output: Path, cluster: Cluster
+    call: Call,
+    photos: Path,
+    output: Path,
+    cluster: Cluster,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     address = cluster.address
     options = ("--engine", "dask", "--scheduler", address, "--resource", "board")
-    starting = threading.Timer(8.0, cluster.add_worker, ("--no-nanny", "--resources", "board=1"))
-    starting.start()
+    tell = PlainLines.__call__
+
+    def add_one_once_told(lines: PlainLines, event: Event) -> None:
+        tell(lines, event)
+        if len(cluster.workers) == 1 and any(each.waiting_for for each in event.workers):
+            cluster.add_worker("--no-nanny", "--resources", "board=1")
+
+    monkeypatch.setattr(PlainLines, "__call__", add_one_once_told)
     answer = call("run", photos, "-o", output, *RUN, *options)
     assert answer.code == 0, answer.err
-    assert (
-        "no worker with the resource board is there yet; start some with "
-        f"'dask worker {address} --nthreads 1 --resources board=1'"
-    ) in answer.err
+    assert f"'dask worker {address} --nthreads 1 --resources board=1'" in answer.err
     assert "waiting for a worker with the resource board, " in answer.err
     assert "rows     1: ok 1" in answer.out

@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -15,6 +14,7 @@ from polars.testing import assert_frame_equal
 from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 from tests.evaluation.tables import figures, measured, write_table
+from tests.waiting import wait_until
 
 
 def test_folders_are_listed_with_what_they_hold(call: Call, tmp_path: Path) -> None:
@@ -78,8 +78,7 @@ def test_an_interrupted_import_leaves_nothing(tmp_path: Path, number: signal.Sig
         f"main(['import', {str(file)!r}, '-o', {str(tmp_path / 'out')!r}])\n"
     )
     with subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE) as process:
-        while not waiting.exists() and process.poll() is None:
-            time.sleep(0.05)
+        wait_until(lambda: process.poll() is not None or waiting.exists())
         process.send_signal(number)
         assert process.stderr is not None
         assert process.stderr.read() == b"interrupted\n"

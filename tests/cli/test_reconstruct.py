@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import polars as pl
@@ -16,6 +15,7 @@ import pytest
 from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
 from tests.reconstruction.scenes import GRID, write_scene
+from tests.waiting import wait_until
 
 PROGRAM = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
@@ -34,13 +34,13 @@ def flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_models_from_results_and_figures_into_them(
     flight: Path, tmp_path: Path, call: Call
 ) -> None:
     results, models = tmp_path / "results", tmp_path / "models"
     wanted = f"{NAMES},ORB-ORB-HAM-BF"
-    assert call("run", flight, "-o", results, "--combinations", wanted, "--workers", 1).code == 0
+    few = ("--combinations", wanted, "--timing", "shared", "--limit", 5, "--workers", 1)
+    assert call("run", flight, "-o", results, *few).code == 0
     words = ("reconstruct", flight, "-o", models, "--from", results, "--top", 2, *OPTIONS)
     answer = call(*words)
     assert answer.code == 0, answer.err
@@ -155,7 +155,7 @@ def test_one_image_and_other_scenes_are_refused(
 
 def begin(flight: Path, output: Path) -> subprocess.Popen[str]:
     words = ["reconstruct", str(flight), "-o", str(output), "--workers", "1", *OPTIONS]
-    words += ["--combinations", f"{NAMES},ORB-*-HAM-BF,BRISK-*-HAM-BF"]
+    words += ["--combinations", f"{NAMES},ORB-BR*-HAM-BF"]
     return subprocess.Popen(
         [sys.executable, "-c", PROGRAM, *words],
         stdout=subprocess.PIPE,
@@ -171,13 +171,12 @@ def test_what_is_finished_is_not_made_again(
 ) -> None:
     output = tmp_path / "models"
     process = begin(flight, output)
-    while len(outcomes := sorted(output.glob("*/outcome.json"))) < 2:
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.02)
+    wait_until(lambda: process.poll() is not None or len(list(output.glob("*/outcome.json"))) >= 2)
+    outcomes = sorted(output.glob("*/outcome.json"))
     children = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(number)
-    _, err = process.communicate(timeout=30)
-    _, alive = psutil.wait_procs(children, timeout=15)
+    _, err = process.communicate()
+    _, alive = psutil.wait_procs(children, timeout=60)
     assert alive == []
     if number == signal.SIGINT:
         assert process.returncode == 130
@@ -192,7 +191,7 @@ def test_what_is_finished_is_not_made_again(
 
     # The same command: what was being made is made, and the rest after it.
     again = begin(flight, output)
-    _, err = again.communicate(timeout=110)
+    _, err = again.communicate()
     assert again.returncode == 0, err
     assert f"{len(outcomes)} of " in err.splitlines()[0]
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before

@@ -8,11 +8,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-START_SECONDS = 60.0
+from tests.waiting import wait_until
 
 
 @dataclass
@@ -33,13 +32,9 @@ class Cluster:
             *("--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)),
             *("--dashboard-address", "127.0.0.1:0"),
         )
-        end = time.monotonic() + START_SECONDS
-        while not self.address:
-            assert self._scheduler.poll() is None
-            assert time.monotonic() < end
-            time.sleep(0.05)
-            if file.is_file() and (text := file.read_text()):
-                self.address = json.loads(text)["address"]
+        scheduler = self._scheduler
+        wait_until(lambda: scheduler.poll() is not None or (file.is_file() and file.stat().st_size))
+        self.address = json.loads(file.read_text())["address"]
 
     def add_worker(self, *options: str) -> subprocess.Popen[bytes]:
         """Start a worker with one thread, which joins in a while."""

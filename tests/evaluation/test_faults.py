@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -35,8 +35,8 @@ OUTCOMES = {
     "CV2": ("error", "OpenCV"),
     "NONSENSE": ("error", "TypeError"),
 }
-# Generous: a crowded machine takes seconds to start each of the many workers.
-pytestmark = pytest.mark.timeout(600)
+# What a process that goes on with other work could blame on others; the rest shares one run.
+ALONE = ("GROW", "GROW_SHARED", "STRANGE")
 
 
 @dataclass(frozen=True)
@@ -52,15 +52,16 @@ class Arena:
         with self.monkeypatch.context() as patch:
             patch.setenv(HEALTHY, "1")
             results = run(
-                self.dataset, combinations, self.folder / "healthy", engine=InlineEngine()
+                *(self.dataset, combinations, self.folder / "healthy"),
+                timing="shared",
+                engine=InlineEngine(),
             )
             return rows_of(results.table())
 
     def run(self, combinations: str, *, retry_failed: bool = False) -> Results:
         return run(
-            self.dataset,
-            combinations,
-            self.folder / "results",
+            *(self.dataset, combinations, self.folder / "results"),
+            timing="shared",
             retry_failed=retry_failed,
             **LIMITS,
         )
@@ -77,19 +78,21 @@ def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Arena]:
     assert not workers_of(str(tmp_path))
 
 
-def assert_only_the_guilty_failed(results: Results, healthy: Rows, fault: str) -> None:
-    """Rows of the faulty method on the marked image failed as expected; the rest is untouched."""
-    status, words = OUTCOMES[fault]
+def assert_only_the_guilty_failed(results: Results, healthy: Rows, faults: Sequence[str]) -> None:
+    """Rows of faulty methods on the marked image failed as expected; the rest is untouched."""
     rows = rows_of(results.table())
     assert rows.keys() == healthy.keys()
     failed = {name for name, row in rows.items() if row["status"] not in ("ok", "chance")}
-    assert failed == {
-        name
+    guilty = {
+        name: fault
         for name, row in healthy.items()
+        for fault in faults
         if row["pair"] in SUFFERING and fault in (row["detector"], str(row["descriptor"])[2:])
     }
-    assert failed
-    for name in failed:
+    assert failed == guilty.keys()
+    assert set(guilty.values()) == set(faults)
+    for name, fault in guilty.items():
+        status, words = OUTCOMES[fault]
         message = str(rows[name]["message"])
         assert rows[name]["status"] == status, message
         assert words in message
@@ -106,12 +109,19 @@ def combinations_of(fault: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fault", OUTCOMES)
+@pytest.mark.parametrize("fault", ALONE)
 def test_a_fault_costs_only_itself(arena: Arena, fault: str) -> None:
     combinations = combinations_of(fault)
     healthy = arena.healthy(combinations)
-    results = arena.run(combinations)
-    assert_only_the_guilty_failed(results, healthy, fault)
+    assert_only_the_guilty_failed(arena.run(combinations), healthy, [fault])
+
+
+@pytest.mark.slow
+def test_several_faults_in_one_run(arena: Arena) -> None:
+    several = [fault for fault in OUTCOMES if fault not in ALONE]
+    combinations = ",".join(combinations_of(fault) for fault in several)
+    healthy = arena.healthy(combinations)
+    assert_only_the_guilty_failed(arena.run(combinations), healthy, several)
 
 
 def test_a_crash_costs_only_its_pair(arena: Arena) -> None:
@@ -119,7 +129,7 @@ def test_a_crash_costs_only_its_pair(arena: Arena) -> None:
     small = replace(arena, dataset=dataset)
     healthy = small.healthy("SEGFAULT-ORB-HAM-BF,ORB-ORB-HAM-BF")
     results = small.run("SEGFAULT-ORB-HAM-BF,ORB-ORB-HAM-BF")
-    assert_only_the_guilty_failed(results, healthy, "SEGFAULT")
+    assert_only_the_guilty_failed(results, healthy, ["SEGFAULT"])
 
 
 @pytest.mark.slow
@@ -152,19 +162,3 @@ def test_failed_rows_are_measured_again_on_demand(arena: Arena) -> None:
     again = arena.run(combinations, retry_failed=True)
     assert_same_rows(rows_of(again.table()), healthy)
     assert again.status().statuses == {"ok": 12}
-
-
-@pytest.mark.slow
-def test_several_faults_in_one_run(arena: Arena) -> None:
-    several = ("SEGFAULT", "SLEEP", "ALLOCATE")
-    combinations = ",".join(combinations_of(fault) for fault in several)
-    healthy = arena.healthy(combinations)
-    rows = rows_of(arena.run(combinations).table())
-    assert rows.keys() == healthy.keys()
-    for name, row in rows.items():
-        fault = next((f for f in several if f in (row["detector"], str(row["descriptor"])[2:])), "")
-        if fault and row["pair"] in SUFFERING:
-            assert row["status"] == OUTCOMES[fault][0]
-            assert GUILTY in str(row["message"])
-        else:
-            assert_same_rows({name: row}, {name: healthy[name]})

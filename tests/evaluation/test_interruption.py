@@ -7,8 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -21,8 +20,9 @@ from aerocues.results.measured_results import Results
 from tests.evaluation.faults import workers_of
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, dataset_of, rows_of, strip, write_dataset
+from tests.waiting import wait_until
 
-COMBINATIONS = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,MSD-ORB-HAM-BF"
+COMBINATIONS = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,KAZE-KAZE-L2-BF,!*-BOOST-*"
 SCRIPT = """
 import sys
 from pathlib import Path
@@ -31,7 +31,7 @@ from tests.evaluation.scenes import dataset_of
 
 images, results, combinations = sys.argv[1:]
 dataset = dataset_of(Path(images), sorted(path.name for path in Path(images).iterdir()))
-run(dataset, combinations, results, workers=2, timeout=60)
+run(dataset, combinations, results, timing="shared", workers=2, timeout=60)
 """
 
 
@@ -53,19 +53,11 @@ def parts_of(results: Path) -> int:
     return len(list((results / "parts").glob("*.parquet")))
 
 
-def wait_until(done: Callable[[], bool], seconds: float = 120) -> None:
-    end = time.monotonic() + seconds
-    while not done() and time.monotonic() < end:
-        time.sleep(0.02)
-    assert done()
-
-
 def _has(results: Path, parts: int, process: subprocess.Popen[bytes]) -> bool:
     return parts_of(results) >= parts or process.poll() is not None
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path) -> None:
     images, results = tmp_path / "images", tmp_path / "results"
     dataset = write_dataset(images, strip(5))
@@ -76,15 +68,16 @@ def test_killed_three_times_and_resumed_equals_an_undisturbed_run(tmp_path: Path
         assert process.poll() is None, process.stderr and process.stderr.read()
         process.send_signal(signal.SIGKILL)
         process.wait()
-        wait_until(lambda: not workers_of(str(images)), 20)
+        wait_until(lambda: not workers_of(str(images)))
         assert not list(tmp_path.glob("aerocues-worker-*"))
         before = parts_of(results)
         assert before >= enough
-        rows = len(Results(results).table())
-        assert rows < 4 * 20
+        assert Results(results).status().left
     last = start(images, results)
-    assert last.wait(400) == 0, last.stderr and last.stderr.read()
-    undisturbed = run(dataset, COMBINATIONS, tmp_path / "undisturbed", engine=InlineEngine())
+    assert last.wait() == 0, last.stderr and last.stderr.read()
+    undisturbed = run(
+        dataset, COMBINATIONS, tmp_path / "undisturbed", timing="shared", engine=InlineEngine()
+    )
     assert_same_rows(rows_of(Results(results).table()), rows_of(undisturbed.table()))
     assert Results(results).status().left == 0
     assert not list(results.rglob("*.tmp"))
@@ -98,8 +91,8 @@ def test_ending_the_whole_process_group_leaves_no_temporary_folder(tmp_path: Pat
     wait_until(partial(_has, results, 1, process))
     assert list(tmp_path.glob("aerocues-worker-*"))
     os.killpg(process.pid, signal.SIGTERM)
-    assert process.wait(20) == -signal.SIGTERM
-    wait_until(lambda: not workers_of(str(images)), 20)
+    assert process.wait() == -signal.SIGTERM
+    wait_until(lambda: not workers_of(str(images)))
     assert not list(tmp_path.glob("aerocues-worker-*"))
 
 

@@ -27,8 +27,6 @@ from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of
 from tests.methods.pictures import textured
 
-pytestmark = pytest.mark.timeout(600)
-
 DROPPING = ("ORB-FREAK-HAM-BF", "MSD-ORB-HAM-BF", "GFTT-BRIEF-HAM-BF")
 
 

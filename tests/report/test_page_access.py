@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.report.conftest import Opened
+from tests.report.test_page_sections import FIGURES
 
 Open = Callable[..., Opened]
 
@@ -27,16 +28,14 @@ def _violations(opened: Opened) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
 def test_axe_finds_nothing_serious(open_report: Open, scheme: str, width: int) -> None:
     opened = open_report("#q=sift", viewport={"width": width, "height": 900}, color_scheme=scheme)
     opened.page.click("#methods-summary")
     for summary in opened.page.locator("#sections summary").all():
         summary.click()
-    for figure in opened.page.locator("figure.figure").all():
-        figure.scroll_into_view_if_needed()
-        opened.page.wait_for_timeout(60)
+    for name in FIGURES:
+        opened.figure(name)
     assert _violations(opened) == []
 
 

@@ -83,12 +83,13 @@ def test_clouds_turn_by_themselves_only_when_asked(open_report: Open) -> None:
     opened = open_report()
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     still = pixels(opened)
-    opened.page.wait_for_timeout(200)
+    opened.page.evaluate("new Promise(done => { requestAnimationFrame(() => setTimeout(done)); })")
     assert pixels(opened) == still
     opened.page.click("#turn-clouds")
     assert opened.page.get_attribute("#turn-clouds", "aria-pressed") == "true"
-    opened.page.wait_for_timeout(400)
-    assert pixels(opened) != still
+    opened.page.wait_for_function(
+        "still => document.querySelector('canvas[data-side=left]').toDataURL() !== still", arg=still
+    )
     opened.page.click("#turn-clouds")
     assert opened.page.inner_text("#turn-clouds") == "Turn"
 
