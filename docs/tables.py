@@ -182,6 +182,11 @@ def metrics() -> Iterator[tuple[str, ...]]:
     return _columns(schema.DERIVED)
 
 
+def reference() -> Iterator[tuple[str, ...]]:
+    """Columns that the reference of a pair fills."""
+    return _columns(schema.REFERENCE)
+
+
 def ground_truth() -> Iterator[tuple[str, ...]]:
     """Columns that need ground truth."""
     return _columns(schema.GROUND_TRUTH)
@@ -248,7 +253,7 @@ Table = Callable[[], Iterator[tuple[str, ...]]]
 TABLES: dict[str, tuple[Table, ...]] = {
     "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
-    "metrics.md": (counts, metrics, ground_truth, times),
+    "metrics.md": (counts, metrics, reference, ground_truth, times),
     "reconstruction.md": (reconstruction_statuses, reconstructions),
     "results.md": (names, provenance),
     "tuning.md": (tuned, grids),

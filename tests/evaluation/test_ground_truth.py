@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pixels
-from aerocues.evaluation.correspondence import PlaneCorrespondence, covisible, transfer
 from aerocues.evaluation.ground_truth import area_under_curve, corner_error
-from aerocues.evaluation.ground_truth import repeatability as repeatability_by
+from aerocues.pipeline.correspondence import PlaneCorrespondence, covisible, transfer
+from aerocues.pipeline.point_figures import repeatability as repeatability_by
 
 IDENTITY = np.eye(3)
 

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.datasets.decoding import FileSource
-from aerocues.evaluation.correspondence import transfer
 from aerocues.evaluation.run import run
 from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.combination import Combination
@@ -21,6 +20,7 @@ from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.correspondence import transfer
 from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import Verifier
 from tests.evaluation.inline import InlineEngine

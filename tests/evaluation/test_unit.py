@@ -39,8 +39,8 @@ def calls(draw: st.DrawFn) -> StageCall | None:
     if draw(st.booleans()) and draw(st.booleans()):
         return None
     combination = draw(st.sampled_from(COMBINATIONS))
-    stage = draw(st.sampled_from(["detect", "describe", "match", "verify"]))
-    descriptor = "" if stage == "detect" else combination.descriptor
+    stage = draw(st.sampled_from(["reference", "detect", "describe", "match", "verify"]))
+    descriptor = "" if stage in ("reference", "detect") else combination.descriptor
     named = str(combination) if stage in ("match", "verify") else ""
     return StageCall(stage, draw(st.integers(0, 30)), "image", "ORB", descriptor, named)
 
@@ -139,3 +139,13 @@ def test_only_what_depends_on_the_call_is_given_up(
     assert list(guilty.work[0].combinations) == given_up
     left = [c for part in remaining for c in part.work[0].combinations]
     assert left == [c for c in COMBINATIONS if c not in given_up]
+
+
+def test_a_reference_that_cannot_be_built_costs_its_pair_alone() -> None:
+    unit = Unit("ORB", tuple(work(pair, COMBINATIONS[:2]) for pair in (3, 4, 5)), 6.0)
+    call = StageCall("reference", 4, "a and b", "flow")
+    remaining, guilty = split(unit, call, certain=True)
+    assert guilty is not None
+    assert [part.pair for part in guilty.work] == [4]
+    assert guilty.rows == 2
+    assert sorted(part.pair for each in remaining for part in each.work) == [3, 5]

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from aerocues.evaluation.correspondence import transfer
 from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.correspondence import transfer
 from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.pipeline.verification import (
     Model,

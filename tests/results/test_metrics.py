@@ -25,7 +25,8 @@ def measured(**values: Any) -> dict[str, Any]:
 
 
 def test_a_row_calculated_by_hand() -> None:
-    row = measured(**COUNTED, **TIMED, chance_inliers=20.0)
+    right = {"ref_matching_score@1": 70 / 800, "ref_matching_score@3": 100 / 800}
+    row = measured(**COUNTED, **TIMED, **right, chance_inliers=20.0)
     expected = {
         "precision": 0.6,
         "recall": 0.15,
@@ -37,6 +38,9 @@ def test_a_row_calculated_by_hand() -> None:
         "seconds_per_1k_matches": 1.5,
         "seconds_per_1k_inliers": 2.5,
         "seconds_per_1k_keypoints": 0.375,
+        "ref_matches@1": 70,
+        "ref_matches@3": 100,
+        "seconds_per_1k_ref_matches": 3.0,
     }
     assert {metric.name for metric in METRICS} == set(expected)
     for name, value in expected.items():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import tempfile
 import threading
 import time
@@ -94,10 +95,13 @@ class UnitMeasurer(WorkerPlugin):
     def setup(self, worker: Worker) -> None:
         self._worker = worker
         folder = self._context.features
+        # For all workers of this machine: they have scratch folders side by side.
+        self._references = Path(worker.local_directory).parent / f"{self.name}-references"
         self._context = replace(
             self._context,
             machine=machine_name(),
             features=folder if folder and folder.is_dir() else None,  # processes must not be shared
+            references=self._references,
         )
         self._memory = self._memory_limit_mb or _memory_of(worker)
         self._different = _different_versions(self._versions)
@@ -110,6 +114,7 @@ class UnitMeasurer(WorkerPlugin):
     def teardown(self, worker: Worker) -> None:
         self._ending.set()
         self._end_idle()
+        shutil.rmtree(self._references, ignore_errors=True)
 
     def measure(self, key: str, unit: Unit) -> Measured:
         """Measure a unit, or as many of its pairs as the time allows.

@@ -50,11 +50,12 @@ class Evaluator:
             self._features.trim(frozenset((unit.detector, name) for name in names))
 
     def _evaluate_pair(self, detector: str, pair: Pair, work: PairWork) -> Iterator[Row]:
-        self._two_views.begin_pair()
+        self._two_views.begin_pair(pair)
         images = [self._context.dataset.image(name) for name in (pair.image_1, pair.image_2)]
         detected = [self._features.detected(image, detector, pair.index) for image in images]
         for combination, key in zip(work.combinations, work.row_keys, strict=True):
             row = begin_row(self._context, pair, combination, key)
+            self._two_views.begin_row(row)
             try:
                 first, second = map(unless_failed, detected)
                 _record_detection(row, first, second)

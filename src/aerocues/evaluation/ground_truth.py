@@ -6,39 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pixels
-from aerocues.datasets.true_geometry import Points
-from aerocues.evaluation.correspondence import Correspondence, transfer
-
-REPEATABILITY_RADIUS = 3.0
-
-
-def _distinct(points: Points) -> NDArray[np.float64]:
-    return np.asarray(np.unique(points, axis=0), np.float64)
-
-
-def repeatability(points_1: Points, points_2: Points, truth: Correspondence) -> float | None:
-    """Share of covisible keypoints found again, one to one (Mikolajczyk et al., IJCV 2005).
-
-    Two keypoints correspond if each is the nearest to the other and they are at most 3 px apart in
-    image 2. Keypoints at the same position (SIFT has one per orientation) count once. The share
-    refers to the smaller of the two covisible sets.
-
-    Returns
-    -------
-    float or None
-        None if one image has no covisible keypoints.
-    """
-    # The import takes a tenth of a second in each worker, and most workers never need it.
-    from scipy.spatial import cKDTree
-
-    moved, second = truth.shared(_distinct(points_1), _distinct(points_2))
-    if not len(moved) or not len(second):
-        return None
-    distance, forth = cKDTree(second).query(moved, distance_upper_bound=REPEATABILITY_RADIUS)
-    back = cKDTree(moved).query(second, distance_upper_bound=REPEATABILITY_RADIUS)[1]
-    found = np.flatnonzero(np.isfinite(distance))
-    same = int((np.asarray(back)[np.asarray(forth)[found]] == found).sum())
-    return same / min(len(moved), len(second))
+from aerocues.pipeline.correspondence import transfer
 
 
 def corner_error(

@@ -155,6 +155,7 @@ def run(
     chosen = select(context.methods, combinations, **kept, everything=everything)
     turns, told = asked.passes(opened), RunProgress(progress)
     store = Store.create(Path(output))
+    context = replace(context, references=store.references)
     with store.writing():
         for number, turn in enumerate(turns):
             own = context.timed(turn.timing)

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from aerocues.datasets.dataset import Dataset, Pair, TrueView
 from aerocues.datasets.true_geometry import Located
 from aerocues.evaluation import ground_truth
-from aerocues.evaluation.correspondence import Correspondence, PlaneCorrespondence
 from aerocues.evaluation.depth_correspondence import DepthCorrespondence
 from aerocues.evaluation.relative_pose import estimate_pose, pose_error, true_pose
 from aerocues.methods.arrays import Float32Array
+from aerocues.pipeline.correspondence import Correspondence, PlaneCorrespondence
 from aerocues.pipeline.features import Described, ImageFeatures, run_stage
+from aerocues.pipeline.point_figures import PointFigures
 from aerocues.pipeline.verification import IndexArray, Verifier
 from aerocues.results.metrics import Row
 from aerocues.results.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS
@@ -24,6 +25,12 @@ class TwoViews:
     pair: Pair
     images: tuple[ImageFeatures, ImageFeatures]
     described: tuple[Described, Described]
+
+    @property
+    def positions(self) -> tuple[Float32Array, Float32Array]:
+        """Where the keypoints of both images lie, (N, 2) float32 pixels each."""
+        first, second = (described.features.keypoints.xy for described in self.described)
+        return first, second
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +52,12 @@ class TruthComparison:
 
     def __init__(self, dataset: Dataset) -> None:
         self._dataset = dataset
-        self._repeatabilities: dict[tuple[bytes, bytes], float | None] = {}
+        self._figures = PointFigures("gt")
         self._depth: DepthCorrespondence | None = None
 
     def begin_pair(self) -> None:
         """Forget the cached data of the previous pair."""
-        self._repeatabilities.clear()
+        self._figures.begin_pair()
         self._depth = None
 
     def compare(self, row: Row, views: TwoViews, found: Matched, verifier: Verifier) -> None:
@@ -60,7 +67,8 @@ class TruthComparison:
         """
         correspondence = self._correspondence(views)
         if correspondence is not None:
-            self._compare_points(row, views, found, correspondence)
+            errors = correspondence.errors(found.points_1, found.points_2)
+            row.update(self._figures.of(errors, views.positions, correspondence))
         if views.pair.homography is not None:
             self._compare_homography(row, views, found, verifier)
         true_views = self._dataset.true_views(views.pair)
@@ -77,21 +85,6 @@ class TruthComparison:
             first, second = run_stage(what, lambda: [Located.of(view) for view in true_views])
             self._depth = DepthCorrespondence(first, second)
         return self._depth
-
-    def _compare_points(
-        self, row: Row, views: TwoViews, found: Matched, truth: Correspondence
-    ) -> None:
-        errors = truth.errors(found.points_1, found.points_2)
-        for threshold in PIXEL_THRESHOLDS:
-            correct = int((errors <= threshold).sum())
-            if len(errors):
-                row[f"gt_precision@{threshold}"] = correct / len(errors)
-            row[f"gt_matching_score@{threshold}"] = correct / row["keypoints_1"]
-        xy_1, xy_2 = (described.features.keypoints.xy for described in views.described)
-        same = (xy_1.tobytes(), xy_2.tobytes())
-        if same not in self._repeatabilities:
-            self._repeatabilities[same] = ground_truth.repeatability(xy_1, xy_2, truth)
-        row["gt_repeatability"] = self._repeatabilities[same]
 
     def _compare_homography(
         self, row: Row, views: TwoViews, found: Matched, verifier: Verifier

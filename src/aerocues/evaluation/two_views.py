@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from aerocues.datasets.dataset import Pair
+from aerocues.evaluation.reference_comparison import ReferenceComparison
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.feature_source import Announce
 from aerocues.pipeline.pair_stages import PairStages, matched_points
+from aerocues.pipeline.reference_source import ReferenceSource
 from aerocues.results.metrics import Row
 
 
@@ -19,10 +22,22 @@ class TwoViewMeasurement:
             context.methods, context.protocol, context.dataset.geometry, clock, announce
         )
         self._truth = TruthComparison(context.dataset)
+        self._reference: ReferenceComparison | None = None
+        if context.protocol.chance:
+            source = ReferenceSource(context.references, announce)
+            share = context.protocol.chance.right_share
+            self._reference = ReferenceComparison(context.dataset, source, share)
 
-    def begin_pair(self) -> None:
-        """Forget what was remembered of the pair before."""
+    def begin_pair(self, pair: Pair) -> None:
+        """Get ready for another pair."""
         self._truth.begin_pair()
+        if self._reference:
+            self._reference.begin_pair(pair)
+
+    def begin_row(self, row: Row) -> None:
+        """Enter what is the same in all rows of the pair."""
+        if self._reference:
+            self._reference.describe_pair(row)
 
     def measure(self, row: Row, views: TwoViews, combination: Combination) -> str:
         """Match, verify and measure; the status. The row keeps what was found until a failure."""
@@ -49,6 +64,9 @@ class TwoViewMeasurement:
             status = verdict.status
         found = Matched(*points, order)
         self._truth.compare(row, views, found, self._stages.verifier(combination))
+        model = verdict.model if verdict else None
+        if self._reference and self._reference.compare(row, views, found, model):
+            return "chance"
         return status
 
 

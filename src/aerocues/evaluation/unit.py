@@ -67,7 +67,8 @@ class Unit:
 class Context:
     """The context that all units of a run share; it is sent to each worker once.
 
-    ``features`` is an optional folder in which features are stored for other runs.
+    ``features`` is an optional folder in which features are stored for other runs, and
+    ``references`` one in which the workers share the references of pairs.
     """
 
     dataset: Dataset
@@ -77,6 +78,7 @@ class Context:
     settings_key: str
     machine: str
     features: Path | None = None
+    references: Path | None = None
 
     def timed(self, timing: Timing) -> Context:
         """The same context with another timing, which does not change row keys."""
@@ -87,7 +89,7 @@ def _blamed(work: PairWork, call: StageCall, pairs: frozenset[int]) -> frozenset
     """The combinations of a pair that are blocked because `call` does not return."""
     if work.pair not in pairs:
         return frozenset()
-    if call.stage == "detect":
+    if call.stage in ("detect", "reference"):
         return frozenset(work.combinations)
     if call.stage == "describe":
         return frozenset(c for c in work.combinations if c.descriptor == call.descriptor)

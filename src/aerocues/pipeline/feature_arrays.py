@@ -1,4 +1,4 @@
-"""Features in files: arrays of numpy, zipped, whole or not there at all."""
+"""Features and references in files: arrays of numpy, zipped, whole or not there at all."""
 
 from __future__ import annotations
 
@@ -32,11 +32,12 @@ def read_arrays(file: Path, names: tuple[str, ...]) -> Arrays | None:
         return None
 
 
-def write_arrays(file: Path, arrays: Arrays) -> None:
+def write_arrays(file: Path, arrays: Arrays, *, compressed: bool = False) -> None:
     """Write a file of arrays; OSError where there is no room."""
     content = io.BytesIO()
     named: dict[str, Any] = dict(arrays)
-    np.savez(content, **named)
+    save = np.savez_compressed if compressed else np.savez
+    save(content, **named)
     write_whole({file: content.getbuffer()})
 
 

@@ -107,6 +107,18 @@ class ImageFeatures:
     prepared: dict[type, Any] = field(default_factory=dict)
 
 
+def read_inner(image: Image) -> Pixels:
+    """The pixels of an image, of which those are valid that keypoints may lie on.
+
+    Raises
+    ------
+    ImageError
+        If it cannot be decoded whole.
+    """
+    pixels = image.read()
+    return Pixels(pixels.bgr, _inner(pixels.valid))
+
+
 def _inner(valid: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
     """The valid pixels away from the border: the edge of a warp looks like corners beside it."""
     if valid is None:
@@ -115,7 +127,7 @@ def _inner(valid: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
     return np.asarray(cv2.erode(valid.astype(np.uint8), kernel), bool)
 
 
-def _on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> Keypoints:
+def on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> Keypoints:
     """Drop keypoints on the border that a warp leaves: they are corners of no object."""
     if valid is None or not len(keypoints):
         return keypoints
@@ -143,7 +155,7 @@ class FeatureExtractor:
             warm_up(lambda: detector.call(_centre(pixels.bgr)))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
-        kept = self._limit.keep(_on_valid_pixels(found, pixels.valid), self._seed)
+        kept = self._limit.keep(on_valid_pixels(found, pixels.valid), self._seed)
         return ImageFeatures(image, pixels, kept, time)
 
     def read(self, image: Image, keypoints: Keypoints, detect_time: StageTime) -> ImageFeatures:
@@ -151,8 +163,7 @@ class FeatureExtractor:
         return ImageFeatures(image, self._pixels(image), keypoints, detect_time)
 
     def _pixels(self, image: Image) -> Pixels:
-        pixels = run_stage(f"reading {image.name}", image.read)
-        return Pixels(pixels.bgr, _inner(pixels.valid))
+        return run_stage(f"reading {image.name}", lambda: read_inner(image))
 
     def describe(
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage

@@ -90,6 +90,14 @@ def _estimate(
     return matrix, mask
 
 
+def estimate_fundamental_matrix(
+    points_1: Float32Array, points_2: Float32Array, parameters: Any
+) -> Model:
+    """A fundamental matrix from (M, 2) matched points, M at least 8; no matrix if there is none."""
+    raw = _estimate(cv2.findFundamentalMat, points_1, points_2, parameters)
+    return _checked(*raw, len(points_1))
+
+
 def estimate_homography(points_1: Float32Array, points_2: Float32Array, parameters: Any) -> Model:
     """A homography from (M, 2) matched points; no matrix where there is none."""
     count = len(points_1)

@@ -35,6 +35,14 @@ def _excess(row: Mapping[str, Any]) -> float | None:
     return max(float(row["inliers"]) - float(row["chance_inliers"]), 0.0)
 
 
+def _right_matches(threshold: int) -> Callable[[Mapping[str, Any]], float | None]:
+    def compute(row: Mapping[str, Any]) -> float | None:
+        score = row[f"ref_matching_score@{threshold}"]
+        return None if score is None else float(round(score * row["keypoints_1"]))
+
+    return compute
+
+
 def _repeatability(row: Mapping[str, Any]) -> float | None:
     counts = (row["keypoints_1"], row["keypoints_2"])
     return None if None in counts else _ratio(row["inliers"], min(counts))
@@ -68,8 +76,9 @@ PER_THOUSAND: dict[str, str] = {
     "seconds_per_1k_matches": "matches",
     "seconds_per_1k_inliers": "inliers",
     "seconds_per_1k_keypoints": "keypoints_1",
+    "seconds_per_1k_ref_matches": "ref_matches@3",
 }
-"""Metrics that divide `total_seconds` by a count."""
+"""Metrics that divide `total_seconds` by a count of a row."""
 
 
 def _per_thousand(name: str) -> Callable[[Mapping[str, Any]], float | None]:
@@ -146,11 +155,28 @@ METRICS: tuple[Metric, ...] = (
         "1000 x total_seconds / keypoints_1; undefined without keypoints",
         _per_thousand("seconds_per_1k_keypoints"),
     ),
+    *(
+        Metric(
+            f"ref_matches@{threshold}",
+            "count",
+            "higher",
+            f"matches with an error against the reference up to {threshold} px",
+            _right_matches(threshold),
+        )
+        for threshold in (1, 3)
+    ),
+    Metric(
+        "seconds_per_1k_ref_matches",
+        "s",
+        "lower",
+        "1000 x total_seconds / ref_matches@3; undefined without any",
+        _per_thousand("seconds_per_1k_ref_matches"),
+    ),
 )
 
 
 def add_metrics(row: Row) -> Row:
-    """Fill in all metrics that follow from the values of the row."""
+    """Fill in all metrics that follow from the values of the row, in the order of the table."""
     for metric in METRICS:
         row[metric.name] = metric.compute(row)
     return row

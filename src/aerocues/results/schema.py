@@ -115,31 +115,63 @@ RESOURCES: tuple[Column, ...] = (
     ),
 )
 
-GROUND_TRUTH: tuple[Column, ...] = (
-    *(
+
+def _right_points(prefix: str, error: str) -> tuple[Column, ...]:
+    """What is told of matches and keypoints by their errors."""
+    return (
+        *(
+            Column(
+                f"{prefix}_precision@{t}",
+                "float",
+                "ratio",
+                f"share of matches with {error} up to {t} px",
+            )
+            for t in PIXEL_THRESHOLDS
+        ),
+        *(
+            Column(
+                f"{prefix}_matching_score@{t}",
+                "float",
+                "ratio",
+                f"matches with {error} up to {t} px / keypoints_1",
+            )
+            for t in PIXEL_THRESHOLDS
+        ),
         Column(
-            f"gt_precision@{t}",
+            f"{prefix}_repeatability",
             "float",
             "ratio",
-            f"share of matches with a true error up to {t} px",
-        )
-        for t in PIXEL_THRESHOLDS
-    ),
-    *(
-        Column(
-            f"gt_matching_score@{t}",
-            "float",
-            "ratio",
-            f"matches with a true error up to {t} px / keypoints_1",
-        )
-        for t in PIXEL_THRESHOLDS
-    ),
+            "share of covisible keypoints found again within 3 px, one to one",
+        ),
+    )
+
+
+REFERENCE: tuple[Column, ...] = (
+    _text("reference", "flow, or the reason why the two images have no reference"),
     Column(
-        "gt_repeatability",
+        "reference_agreement",
         "float",
         "ratio",
-        "share of covisible keypoints found again within 3 px, one to one",
+        "share of the matches behind the reference within 3 px of it; trusted from 0.5 on",
     ),
+    Column(
+        "reference_turn",
+        "float",
+        "degrees",
+        "by how much image 2 is turned against image 1 at its centre, 0 to 180",
+    ),
+    *_right_points("ref", "an error against the reference"),
+    Column(
+        "coverage",
+        "float",
+        "ratio",
+        "share of the cells of a 16 x 16 grid on image 1 that hold a match within 3 px of the "
+        "reference",
+    ),
+)
+
+GROUND_TRUTH: tuple[Column, ...] = (
+    *_right_points("gt", "a true error"),
     Column(
         "homography_error",
         "float",
@@ -203,6 +235,7 @@ COLUMNS: tuple[Column, ...] = (
     *OUTCOME,
     *COUNTS,
     *DERIVED,
+    *REFERENCE,
     *GROUND_TRUTH,
     *TIMES,
     *HOW_TIMED,

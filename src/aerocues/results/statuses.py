@@ -24,7 +24,11 @@ STATUSES: tuple[Status, ...] = (
     Status("no_descriptors", "the descriptor kept no keypoints in one of the images"),
     Status("too_few_matches", "too few mutual matches to estimate and judge a model"),
     Status("no_model", "robust estimation returned no valid fundamental matrix"),
-    Status("chance", "the model is not better than models of shuffled matches"),
+    Status(
+        "chance",
+        "the model is not better than models of shuffled matches, or almost none of its inliers "
+        "are right according to the reference of the pair",
+    ),
     Status("error", "a method raised an error; see the message", retried=True),
     Status("crashed", "the process died in a method; the message names the method", retried=True),
     Status("timeout", "a stage exceeded its time limit", retried=True),

@@ -30,7 +30,9 @@ PARTS = "parts"
 RUN = "run.json"
 RACE = "race.json"
 PLAN = "plan.parquet"
-OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, LOCK)
+REFERENCES = "references"
+"""Where workers share references of pairs; it may be deleted, and is not packed."""
+OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, REFERENCES, LOCK)
 LONGEST_LIST = 12
 
 
@@ -71,6 +73,11 @@ class Store(ReconstructionStore):
             ) from error
         return store
 
+    @property
+    def references(self) -> Path:
+        """The folder of references, absolute; it need not exist."""
+        return (self.folder / REFERENCES).absolute()
+
     @contextlib.contextmanager
     def writing(self) -> Iterator[None]:
         """Lock the folder against other runs, and remove partial files of an interrupted run.
@@ -103,7 +110,7 @@ class Store(ReconstructionStore):
         return cls(folder)
 
     def _remove_leftovers(self) -> None:
-        beside = (self._parts, self.folder, self.folder / CLOUDS)
+        beside = (self._parts, self.folder, self.folder / CLOUDS, self.references)
         for path in [path for folder in beside for path in folder.glob("*.tmp")]:
             path.unlink(missing_ok=True)
 

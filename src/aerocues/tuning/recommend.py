@@ -144,6 +144,7 @@ def recommend(
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
     store = Store.create(Path(output or f"{dataset.name}-race"))
+    context = replace(context, references=store.references)
     tell = RaceProgress(progress, seconds)
     with store.writing(), engine_here.standing(context) as engine:
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
@@ -226,6 +227,7 @@ def _evaluators(
         limit=context.protocol.limit,
     )
     # What is opened last is what the folder is about.
+    looking = replace(looking, references=context.references)
     first = PairEvaluator(looking, probes(), store, tested, hashing)
     return _Evaluators(first, PairEvaluator(context, chosen, store, preset, hashing))
 

@@ -162,6 +162,7 @@ def tune(
         searched = []
         for each, split in zip(every, splits, strict=True):
             context = _context(_part(each, split), base, spaces, options)
+            context = replace(context, references=store.references)
             evaluator = PairEvaluator(context, _variants(spaces), store, base, tell.read)
             own = engines.enter_context(engine.standing(context))
             searched.append(TuningDataset(evaluator, own, split))

@@ -81,7 +81,12 @@ def transfer(points: Points, homography: NDArray[np.float64]) -> NDArray[np.floa
 
 def covisible(points: Points, homography: NDArray[np.float64], target: Pixels) -> NDArray[np.bool_]:
     """Mask (N,) of the points that fall on valid pixels of the other image."""
-    rounded, inside = nearest_pixels(transfer(points, homography), target.bgr.shape[:2])
-    if target.valid is not None:
-        inside[inside] = target.valid[rounded[inside, 1], rounded[inside, 0]]
+    return shown(transfer(points, homography), target)
+
+
+def shown(points: NDArray[np.float64], pixels: Pixels) -> NDArray[np.bool_]:
+    """Mask (N,) of the points that lie on valid pixels of an image; NaN lies on none."""
+    rounded, inside = nearest_pixels(points, pixels.bgr.shape[:2])
+    if pixels.valid is not None:
+        inside[inside] = pixels.valid[rounded[inside, 1], rounded[inside, 0]]
     return inside
