@@ -28,7 +28,7 @@ def test_the_answer_comes_first(flight: Results) -> None:
 def test_several_entries_have_headings_and_a_comparison(two_machines: list[Results]) -> None:
     text = summary(report_entries(two_machines, resamples=50), "Mine")
     headings = [line for line in text.splitlines() if line.startswith("## ")]
-    assert headings == ["## flight (desk)", "## flight (board)", "## Across all"]
+    assert headings == ["## flight (desk)", "## flight (board)", "## Across all datasets"]
 
 
 def test_names_in_the_data_are_text(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_clouds_are_turned_together(open_report: Open) -> None:
     assert all(old != new for old, new in zip(before, after, strict=True))
     opened.page.keyboard.press("Home")
     assert [pixels(opened, side) for side in ("left", "right")] == before
-    for label in ("Nearer", "See more from above", "Turn to the left"):
+    for label in ("Zoom in", "View more from above", "Turn to the left"):
         opened.page.get_by_role("button", name=label).click()
     assert pixels(opened) != before[0]
     box = opened.page.locator("canvas[data-side=left]").bounding_box()

@@ -99,7 +99,7 @@ def test_columns_are_chosen(open_report: Open) -> None:
     assert opened.page.locator('#ranking th[data-key="detector"]').count() == 1
     opened.page.get_by_label("p", exact=True).uncheck()
     assert opened.page.locator('#ranking th[data-key="p_value"]').count() == 0
-    opened.page.get_by_text("Usual columns").first.click()
+    opened.page.get_by_text("Default columns").first.click()
     assert opened.page.locator('#ranking th[data-key="p_value"]').count() == 1
 
 

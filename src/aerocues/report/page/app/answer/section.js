@@ -144,8 +144,7 @@ function equalsCard(entry) {
     if (second === undefined) return null;
     return card("Runner-up", entry.combinations[second], figuresList([
       ...scoreFigures(entry, second),
-      ["Difference from the best", isKnown(score.p_value[second])
-        ? `p = ${shown(score.p_value[second], 2)}` : "not tested"]]));
+      ["p against the best", isKnown(score.p_value[second]) ? shown(score.p_value[second], 2) : "not tested"]]));
   }
   const row = (/** @type {number} */ a) => make("li", {value: score.rank[a]}, make("span", {}, entry.combinations[a]), ` ${fixed(score.score[a])}`);
   return card("Not significantly different", null, [
