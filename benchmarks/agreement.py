@@ -48,7 +48,7 @@ FLIGHTS = {
 }
 """Scene, seed, number of pairs (the last one across strips) and mission of each."""
 PLANES = ("oxford", "hpatches")
-SECOND_IMAGES = ("2", "4")
+SECOND_IMAGES = (2, 4)
 
 
 def datasets(work: Path) -> Iterator[Dataset]:
@@ -58,14 +58,14 @@ def datasets(work: Path) -> Iterator[Dataset]:
         survey.write_text(mission)
         words = ("simulate", "--survey", survey, "--scene", scene, "--seed", seed, "-o", flight)
         subprocess.run([sys.executable, "-m", "aerocues", *map(str, words)], check=True)
-        yield aerocues.open_dataset(f"simulated:{flight}", limit=pairs)
+        yield aerocues.open_dataset(f"simulated:{flight}", max_pairs=pairs)
     data = Path(os.environ.get("AEROCUES_SHARED_DATA", "../shared/data"))
     for kind in PLANES:
         whole = aerocues.open_dataset(f"{kind}:{data / kind}")
-        pairs = [pair for pair in whole.pairs if Path(pair.image_2).stem[-1] in SECOND_IMAGES]
-        used = {name for pair in pairs for name in (pair.image_1, pair.image_2)}
+        chosen = [pair for pair in whole.pairs if number(pair.image_2) in SECOND_IMAGES]
+        used = {name for pair in chosen for name in (pair.image_1, pair.image_2)}
         images = [image for image in whole.images if image.name in used]
-        yield replace(whole, pairs=pairs, images=images)
+        yield replace(whole, pairs=chosen, images=images)
 
 
 def measured(dataset: Dataset, work: Path) -> pl.DataFrame:
@@ -100,14 +100,18 @@ def seconds(dataset: Dataset, pair: Pair) -> tuple[float, float]:
     return built, (time.process_time() - began) / REPEATS
 
 
+def number(image: str) -> int:
+    """The number in the name of an image's file."""
+    return int("".join(filter(str.isdigit, Path(image).stem)))
+
+
 def line(rows: pl.DataFrame, dataset: Dataset, pair: Pair) -> dict[str, object]:
     """What is said of a pair."""
     own = rows.filter((pl.col("pair") == pair.index) & pl.col(TRUTH).is_not_null())
     built, compared = seconds(dataset, pair)
     told = own.row(0, named=True)
     said: dict[str, object] = {
-        "pair": f"{dataset.name} {Path(pair.image_1).stem}-{Path(pair.image_2).stem}",
-        "sequence": pair.sequence,
+        "pair": f"{pair.sequence} {number(pair.image_1)}-{number(pair.image_2)}",
         "agreement": told["reference_agreement"],
         "combinations": len(own),
         "CPU s": built,

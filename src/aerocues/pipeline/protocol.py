@@ -51,9 +51,9 @@ class ChanceTest:
     images are known to show a plane or to be taken from one place, a homography, whose samples
     are smaller, is looked for last in the same way.
 
-    Where few matches are right, shuffling does not always tell: a model is chance, too, if less
-    than `right_share` of its inliers are right by the reference of the two images. Of those of
-    models that shuffled matches gave at most 0.02 were, of those of true models at least 0.3.
+    Where few matches are right, shuffling does not always tell: a model is also chance if less
+    than `right_share` of its inliers are right according to the reference of the two images. The
+    share was at most 0.03 in models of shuffled matches, and at least 0.15 in those that hold.
     """
 
     shuffles: int = 5
