@@ -62,7 +62,7 @@ def test_models_from_results_and_figures_into_them(
     assert written["points_3d"].to_list() == figures["points_3d"].to_list()
 
     again = call(*words)
-    assert again.err == "2 of 2 models are there already\n"
+    assert again.err == "2 of 2 models are already finished\n"
     scored = call("score", results, "--criteria", "precision,points_3d,registered_images")
     assert scored.code == 2  # the share of the images is the criterion
     scored = call("score", results, "--criteria", "precision,points_3d,reprojection_error")
@@ -186,7 +186,7 @@ def test_what_is_finished_is_not_made_again(
     names = ",".join(path.parent.name for path in outcomes)
     answer = call("reconstruct", flight, "-o", output, "--combinations", names, *OPTIONS)
     assert answer.code == 0
-    assert answer.err == f"{len(outcomes)} of {len(outcomes)} models are there already\n"
+    assert answer.err == f"{len(outcomes)} of {len(outcomes)} models are already finished\n"
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
 
     # The same command: what was being made is made, and the rest after it.

@@ -1,4 +1,4 @@
-"""What a run tells while it works."""
+"""The progress of a run, as events."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from aerocues.results.timing import Timing
 
 
 class RunProgress:
-    """Turns what happens in a run into events.
+    """Turns the progress of a run into events.
 
     Parameters
     ----------
@@ -27,14 +27,14 @@ class RunProgress:
         self.read = self._reading.count
 
     def set_aside(self, rows: int) -> None:
-        """So many rows in the folder, of other settings, count no longer."""
+        """Report the number of rows of other settings, which are now ignored."""
         self._reading.tell(
             message=f"{count(rows, 'row')} of other images or settings in this folder are kept but "
             "ignored; measure with those settings again to use them, or choose another `output`"
         )
 
     def planned(self, plan: Plan, timing: Timing) -> None:
-        """The work of a pass, which is timed in this way, has been divided into units."""
+        """Report that the work of a pass was divided into units."""
         alone = timing == "exclusive"
         stage, unit = ("timing", "rows timed alone") if alone else ("measuring", "rows")
         self._measuring = StageProgress(
@@ -48,14 +48,14 @@ class RunProgress:
         self.watch = self._measuring.watch
 
     def finished(self, finished: Finished) -> None:
-        """A part of a unit is finished and stored."""
+        """Report that a part of a unit is finished and stored."""
         self._cost_done = min(self._cost_done + finished.unit.cost, self._cost_total)
         share = self._cost_done / self._cost_total if self._cost_total else 1.0
         self._measuring.add(len(finished.rows), share=share, rows=tuple(finished.rows))
 
 
 def _left_out(plan: Plan) -> list[str]:
-    """What the images rule out: one line a reason."""
+    """Combinations that are excluded for these images: one line per reason."""
     by_reason: dict[str, list[Exclusion]] = {}
     for exclusion in plan.exclusions:
         by_reason.setdefault(exclusion.reason, []).append(exclusion)
@@ -67,10 +67,10 @@ def _left_out(plan: Plan) -> list[str]:
 
 
 def _work(plan: Plan, *, alone: bool) -> str:
-    """``100 rows to measure in 20 units of work``; empty where nothing is left."""
+    """``100 rows to measure in 20 units of work``; empty if no work is left."""
     if not plan.rows_left:
         return ""
-    present = f"; {plan.rows_present:,} rows are there already" if plan.rows_present else ""
+    present = f"; {plan.rows_present:,} rows are already stored" if plan.rows_present else ""
     what = "to time, one call at a time," if alone else "to measure"
     units = count(len(plan.units), "unit")
     return f"{count(plan.rows_left, 'row')} {what} in {units} of work{present}"

@@ -1,4 +1,4 @@
-"""What may be chosen of a reconstruction."""
+"""Options of a reconstruction."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from aerocues.reconstruction.scene import Wanted
 
 @dataclass(frozen=True)
 class ReconstructionOptions:
-    """What may be chosen besides scene and combinations; see `aerocues.reconstruct`.
+    """Options besides scene and combinations; see `aerocues.reconstruct`.
 
     Parameters
     ----------
@@ -27,21 +27,21 @@ class ReconstructionOptions:
     reference : str or None
         Combination whose cloud is the reference of distances; by default the largest model.
     features : path, optional
-        Folder in which features are kept, and found if `run` or another reconstruction kept them
-        there; by default they are kept for the time of the reconstruction only.
+        Folder for features, which are reused if `run` or another reconstruction stored them there.
+        By default features are removed after the reconstruction.
     workers : int or None
-        Processes at a time; one a core by default.
+        Number of processes; by default one per core.
     timeout : float or str
-        CPU time of a stage.
+        Limit of the CPU time of a stage.
     memory_limit : float or None
-        Gigabytes of each process; its share of 80 % by default.
+        Gigabytes of each process; by default its share of 80 %.
     retry_failed : bool
-        Try again what crashed, raised an error, or ran out of time or memory.
+        Retry reconstructions that crashed, raised an error, or exceeded a limit.
 
     Raises
     ------
     ArgumentError
-        If a limit makes no sense.
+        If a limit is invalid.
     """
 
     preset: str | Preset = "default"

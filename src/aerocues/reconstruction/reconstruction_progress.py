@@ -1,4 +1,4 @@
-"""What a reconstruction tells while it works."""
+"""The progress of a reconstruction, as events."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aerocues.results.metrics import Row
 
 
 class ReconstructionProgress:
-    """Turns what happens into events.
+    """Turns the progress of a reconstruction into events.
 
     Parameters
     ----------
@@ -26,22 +26,22 @@ class ReconstructionProgress:
         self.read = self._reading.count
 
     def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
-        """The images rule out some of the combinations."""
+        """Report combinations that are excluded for these images."""
         what = count(len(combinations), "combination")
         self._making.tell(message=f"left out: {what}, because {reason}")
 
     def planned(self, total: int, present: int) -> None:
-        """`total` combinations are to be there, `present` of which are."""
+        """Report that `present` of `total` combinations are already finished."""
         self._done, self._total, self._present = present, total, present
-        there = f"{present} of {total} models are there already" if present else ""
+        there = f"{present} of {total} models are already finished" if present else ""
         self._making.tell(done=present, total=total, message=there)
 
     def watch(self, activities: Sequence[Activity]) -> None:
-        """What the processes are doing."""
+        """Report the activity of the processes."""
         self._making.watch(activities)
 
     def finished(self, row: Row) -> None:
-        """A combination is finished and stored."""
+        """Report that a combination is finished and stored."""
         self._done += 1
         name = "-".join(str(row[part]) for part in ("detector", "descriptor", "norm", "matcher"))
         self._making.tell(
@@ -52,16 +52,16 @@ class ReconstructionProgress:
         )
 
     def without_reference(self, reference: Combination, reason: str) -> None:
-        """The reference has no model: there are no distances between clouds."""
+        """Report that there are no cloud distances, because the reference has no model."""
         self._making.tell(
             message=f"no distances between clouds: {reference} has no model ({reason})"
         )
 
 
 def summary(row: Row) -> str:
-    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``, or the status of a failure alone.
+    """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``; only the status for a failure.
 
-    The reasons, which may be long, stand in the table.
+    The reasons, which can be long, are in the table.
     """
     parts = []
     if row.get("registered_images"):

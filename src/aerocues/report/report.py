@@ -43,7 +43,7 @@ def report_entries(
     resamples, seed
         Settings of the intervals.
     progress : callable, optional
-        Called with each `aerocues.Event`, whose message says what is being done.
+        Called with each `aerocues.Event`, whose message describes the step.
     **changes
         Settings in place of the preset's: ``alpha, weights, aggregation, failures``. None keeps
         those of the preset.
@@ -56,7 +56,7 @@ def report_entries(
     import polars as pl
 
     if not results:
-        raise ScoreError("there are no results to report on; name a results folder")
+        raise ScoreError("no results were given; name a results folder")
     told = StageProgress(progress, "reporting").say
     told("reading and scoring")
     entries = entries_of(
@@ -114,7 +114,7 @@ def write_report(
     Parameters
     ----------
     results : Results, path, or sequence of them
-        Of one or several datasets and machines.
+        Results of one or several datasets and machines.
     output : path
         HTML file; an existing file is replaced.
     title : str, optional
@@ -127,7 +127,7 @@ def write_report(
     max_megabytes : float
         Clouds and pictures are left out until the page is at most this large.
     progress : callable, optional
-        Called with each `aerocues.Event`, whose message says what is being done.
+        Called with each `aerocues.Event`, whose message describes the step.
 
     Returns
     -------
