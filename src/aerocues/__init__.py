@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from aerocues.methods.combination import Combination
     from aerocues.methods.plugins import register
     from aerocues.modelling import reconstruct
+    from aerocues.pipeline.pipeline import Pipeline
+    from aerocues.pipeline.two_images import MatchedImages, features, match
     from aerocues.progress import Event
     from aerocues.reconstruction.models import Models
     from aerocues.report.report import write_report
@@ -49,6 +51,10 @@ if TYPE_CHECKING:
 _MODULES = {
     "open_dataset": "datasets.catalog",
     "Dataset": "datasets.dataset",
+    "features": "pipeline.two_images",
+    "match": "pipeline.two_images",
+    "MatchedImages": "pipeline.two_images",
+    "Pipeline": "pipeline.pipeline",
     "simulate": "simulation.simulate",
     "run": "evaluation.run",
     "DaskEngine": "evaluation.dask_engine",
@@ -87,8 +93,10 @@ __all__ = [
     "Event",
     "Features",
     "Keypoints",
+    "MatchedImages",
     "Matches",
     "Models",
+    "Pipeline",
     "Ranking",
     "Recommendation",
     "Relations",
@@ -97,7 +105,9 @@ __all__ = [
     "Validation",
     "__version__",
     "compare",
+    "features",
     "import_results",
+    "match",
     "open_dataset",
     "recommend",
     "reconstruct",

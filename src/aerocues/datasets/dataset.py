@@ -189,6 +189,10 @@ class Dataset:
     settings: tuple[tuple[str, str], ...] = ()
     source: Source | None = None
 
+    def __repr__(self) -> str:
+        images, pairs = len(self.images), len(self.pairs)
+        return f"Dataset {self.name}: {images:,} images, {pairs:,} pairs, {self.geometry}"
+
     def image(self, name: str) -> Image:
         """The image called `name`; KeyError if there is none."""
         return self._by_name[name]

@@ -53,6 +53,8 @@ def pixels_of(array: NDArray[np.uint8]) -> Pixels:
     ImageError
         If the shape or the type is another one.
     """
+    if not isinstance(array, np.ndarray):
+        raise ImageError(f"an image is a path or an array, got {array!r}")
     if (
         array.dtype != np.uint8
         or not (array.ndim == 2 or array.shape[2:] == (3,))

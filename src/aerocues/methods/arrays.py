@@ -46,6 +46,9 @@ class Keypoints:
     def __len__(self) -> int:
         return len(self.xy)
 
+    def __repr__(self) -> str:
+        return f"Keypoints: {len(self):,}"
+
     @classmethod
     def from_xy(cls, xy: NDArray[np.floating[Any]], size: float = 31.0) -> Keypoints:
         """Keypoints of which only the positions are known; the rest takes neutral values."""
@@ -118,6 +121,10 @@ class Features:
     def __len__(self) -> int:
         return len(self.keypoints)
 
+    def __repr__(self) -> str:
+        kind = f"{self.descriptors.shape[1]} {self.descriptors.dtype}"
+        return f"Features: {len(self):,} keypoints with descriptors of {kind}"
+
 
 def finite_features(keypoints: Keypoints, descriptors: DescriptorArray) -> Features:
     """Features without the rows whose descriptor is not finite: nothing can match those."""
@@ -151,3 +158,6 @@ class Matches:
 
     def __len__(self) -> int:
         return len(self.indices)
+
+    def __repr__(self) -> str:
+        return f"Matches: {len(self):,}"

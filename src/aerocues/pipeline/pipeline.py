@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.arguments import check_choice, check_whole
 from aerocues.datasets.dataset import Geometry, Image
 from aerocues.datasets.decoded import DecodedSource, pixels_of
 from aerocues.datasets.decoding import FileSource
@@ -18,7 +19,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
-from aerocues.methods.strongest import KeypointLimit
+from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import StageError
@@ -51,6 +52,8 @@ class Pipeline:
 
     Raises
     ------
+    ArgumentError
+        If an argument makes no sense.
     SelectionError
         If there is no such combination or preset, or the combination cannot run here.
     """
@@ -64,9 +67,9 @@ class Pipeline:
         seed: int = 0,
         geometry: Geometry = "epipolar",
     ) -> None:
-        if max_keypoints < 0 or seed < 0:
-            raise SelectionError("max_keypoints and seed must be 0 or more")
-        parts, limit = as_preset(preset), KeypointLimit(max_keypoints)
+        check_whole("seed", seed, 0)
+        check_choice("geometry", geometry, get_args(Geometry))
+        parts, limit = as_preset(preset), keypoint_limit(max_keypoints)
         methods = limit.limited(installed_methods().with_preset(parts))
         chosen = select(methods, str(combination))
         if len(chosen) != 1:
@@ -100,8 +103,8 @@ class Pipeline:
         MethodFailedError
             If the detector or the descriptor fails on it.
         """
-        decoded = _decoded(image)
-        return self._run(lambda: self._features(decoded))
+        in_memory = decoded(image)
+        return self._run(lambda: self._features(in_memory))
 
     def match(self, first: Features, second: Features) -> Matches:
         """Mutual matches of two images.
@@ -156,7 +159,7 @@ class Pipeline:
             raise MethodFailedError(error.message or error.status) from error
 
 
-def _decoded(image: str | Path | NDArray[np.uint8] | Image) -> Image:
+def decoded(image: str | Path | NDArray[np.uint8] | Image) -> Image:
     """The image in memory: what is wrong with a file is told as such."""
     if isinstance(image, Image):
         return Image(image.name, DecodedSource(image.read()))

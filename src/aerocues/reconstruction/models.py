@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
 from aerocues.methods.combination import Combination
+from aerocues.notebooks import as_html
+from aerocues.phrases import count
 from aerocues.reconstruction.exports import MODEL
 from aerocues.reconstruction.images import LIST
 from aerocues.reconstruction.one_model import CLOUD, OUTCOME, PICTURE
 from aerocues.reconstruction.scene import FEATURES, IMAGES
 from aerocues.results.clouds import Cloud, read_cloud
+from aerocues.results.combination_columns import combination_name
 from aerocues.results.metrics import Row
 from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES
 from aerocues.results.reconstructions import reconstruction_table
@@ -24,6 +27,10 @@ if TYPE_CHECKING:
 
 SETTINGS = "reconstruction.json"
 TABLE, TABLE_TEXT = "reconstructions.parquet", "reconstructions.csv"
+SHOWN = (
+    *("status", "registered_images", "images", "points_3d", "mean_track_length"),
+    *("reprojection_error", "position_rmse", "reconstruction_seconds"),
+)
 RETRIED = tuple(status.name for status in RECONSTRUCTION_STATUSES if status.retried)
 
 
@@ -48,6 +55,18 @@ class Models:
                 f"{self.folder} is not a folder of models (it has no {SETTINGS}); make one with "
                 "`aerocues.reconstruct`"
             )
+
+    def __repr__(self) -> str:
+        table = self.table()
+        counts = table["status"].value_counts(sort=True).iter_rows()
+        statuses = ", ".join(f"{status} {number:,}" for status, number in counts)
+        datasets = ", ".join(table["dataset"].unique().sort())
+        made = f"{count(len(table), 'combination')} on {datasets}: {statuses}"
+        return f"Models {self.folder}: {made if len(table) else 'none yet'}"
+
+    def _repr_html_(self) -> str:
+        table = self.table().select(combination_name(), *SHOWN)
+        return as_html(repr(self), table.sort("points_3d", descending=True, nulls_last=True))
 
     @classmethod
     def create(cls, folder: Path) -> None:

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aerocues.notebooks import as_html
+from aerocues.phrases import count
+from aerocues.results.combination_columns import METHODS
 from aerocues.results.failures import failures_of
 from aerocues.results.plan_table import TIMED_ALONE
 from aerocues.results.statuses import RETRIED
@@ -78,6 +81,28 @@ class Results:
             place = unpack(place)
             weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
         self._store = Store.open(place)
+
+    def __repr__(self) -> str:
+        table = self.table()
+        if table.is_empty():
+            return f"Results {self._path}: no rows yet"
+        counts = table["status"].value_counts(sort=True).iter_rows()
+        statuses = ", ".join(f"{status} {number:,}" for status, number in counts)
+        datasets = ", ".join(table["dataset"].unique().sort())
+        combinations = table.select(METHODS).n_unique()
+        pairs = table.select("dataset", "pair").n_unique()
+        models = len(self.reconstructions())
+        made = f"; {count(models, 'reconstruction')}" if models else ""
+        return (
+            f"Results {self._path}: {count(combinations, 'combination')} on "
+            f"{count(pairs, 'pair')} of {datasets}, {count(len(table), 'row')}: {statuses}{made}"
+        )
+
+    def _repr_html_(self) -> str:
+        from aerocues.results.medians import combination_medians
+
+        table = self.table()
+        return as_html(repr(self), table if table.is_empty() else combination_medians(table))
 
     @property
     def folder(self) -> Path:

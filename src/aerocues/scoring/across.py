@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from aerocues.errors import ScoreError
+from aerocues.notebooks import as_html
+from aerocues.phrases import count
 from aerocues.scoring.comparison import Comparison, Over, compare
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
@@ -117,6 +119,13 @@ class ComparedResults:
     entries: Sequence[Entry]
     rankings: Comparison
     machines: Sequence[Machines]
+
+    def __repr__(self) -> str:
+        names = ", ".join(entry.name for entry in self.entries)
+        return f"ComparedResults: {count(len(self.entries), 'ranking')}, {names}"
+
+    def _repr_html_(self) -> str:
+        return as_html(repr(self), self.frame())
 
     def frame(self) -> pl.DataFrame:
         """One row a combination, with its score and rank in each entry, the most versatile first.

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
+from aerocues.notebooks import as_html
 from aerocues.results.combination_columns import COMBINATION, combination_name
 from aerocues.scoring.combinations import (
     SUCCESS,
@@ -122,6 +123,15 @@ class Relations:
     pearson: Array
     spearman: Array
     numbers: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return (
+            f"Relations on {self.dataset}: {len(self.features)} figures of pairs with "
+            f"{len(self.outcomes)} of models, over {len(self.combinations)} combinations"
+        )
+
+    def _repr_html_(self) -> str:
+        return as_html(repr(self), self.frame())
 
     def frame(self) -> pl.DataFrame:
         """One row per pair: ``feature, outcome, combinations, pearson, spearman``."""

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from aerocues.arguments import check_choice, check_whole
 from aerocues.defaults import RESAMPLES, TOP_K
 from aerocues.errors import ScoreError
+from aerocues.notebooks import as_html
+from aerocues.phrases import count, likelihood
 from aerocues.scoring.bootstrap import Bootstrap, bootstrap
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.per_repeat import interval_of_repeats
@@ -58,6 +60,22 @@ class Ranking:
     interval: Interval
     top_k: int
     noun: str = "alternative"
+
+    def __repr__(self) -> str:
+        scores = self.scores
+        names = scores.table.alternatives
+        told = f"Ranking: {count(len(scores.order), self.noun)} by CUES"
+        if not len(scores.order):
+            return told
+        best = names[scores.best]
+        equal = len(self.indistinguishable()) - 1
+        chance = likelihood(float(self.resampled.probability_best()[scores.best]))
+        others = f"; {equal} more cannot be told from it" if equal else ""
+        value = f"{scores.scores[scores.best]:.3f}"
+        return f"{told}; {best} is the best ({value}) with a probability of {chance}{others}"
+
+    def _repr_html_(self) -> str:
+        return as_html(repr(self), self.frame())
 
     def frame(self, name: str | None = None) -> pl.DataFrame:
         """The ranking as a table, the best first, without alternatives that have no score.

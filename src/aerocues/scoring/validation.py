@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from aerocues.defaults import SHORTLIST
 from aerocues.errors import MethodUnavailableError, ScoreError
+from aerocues.phrases import count
 from aerocues.scoring.agreement import Agreement, agreement
 from aerocues.scoring.correlation import criteria_correlation
 from aerocues.scoring.cues import Scores
@@ -68,6 +69,16 @@ class Validation:
     pareto_front: NDArray[np.int64]
     rank_reversal: RankReversal | None
     critical_difference: CriticalDifference | str
+
+    def __repr__(self) -> str:
+        scores = self.scores
+        best = scores.table.alternatives[scores.best]
+        same = self.alpha.best.count(best)
+        return (
+            f"Validation of {count(len(scores.order), 'combination')} by "
+            f"{', '.join(scores.table.criterion_names)}; {best} is the best under "
+            f"{same} of {len(self.alpha.best)} powers alpha"
+        )
 
 
 def validate(

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.datasets.dataset import Dataset
+from aerocues.notebooks import as_html
+from aerocues.phrases import count, likelihood
 from aerocues.scoring.objectives import Objective
 from aerocues.tuning.race import RaceOutcome
 from aerocues.tuning.representative import Seen
@@ -51,6 +53,18 @@ class Recommendation:
     measured: int
     folder: Path
     machine: str
+
+    def __repr__(self) -> str:
+        chance = likelihood(float(self.ranked["probability"][0]))
+        return (
+            f"Recommendation: take {self.best}, the best of {self.combinations:,} for "
+            f"{self.objective.title} on {self.dataset.name} with a probability of {chance}; "
+            f"{count(int(self.outcome.known.sum()), 'measurement')} on "
+            f"{count(len(self.seen.overlapping), 'pair')} in {self.folder}"
+        )
+
+    def _repr_html_(self) -> str:
+        return as_html(repr(self), self.ranked)
 
     @property
     def best(self) -> str:

@@ -73,6 +73,11 @@ class Tuned:
     splits: list[Split]
     folder: Path
 
+    def __repr__(self) -> str:
+        paying = [finding.space.name for finding in self.findings if finding.pays]
+        kept = ", ".join(paying) or "none"
+        return f"Tuned {self.preset.name}: {len(self.findings)} searched, these pay: {kept}"
+
 
 def tune(
     dataset: DatasetLike | Sequence[DatasetLike],
