@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from aerocues.pipeline.two_images import MatchedImages, features, match
     from aerocues.progress import Event
     from aerocues.reconstruction.models import Models
+    from aerocues.report.figure import figure
     from aerocues.report.report import write_report
     from aerocues.results.importing import import_results
     from aerocues.results.measured_results import Results
@@ -71,6 +72,7 @@ _MODULES = {
     "reconstruct": "modelling",
     "Models": "reconstruction.models",
     "write_report": "report.report",
+    "figure": "report.figure",
     "recommend": "tuning.recommend",
     "Recommendation": "tuning.recommendation",
     "tune": "tuning.tune",
@@ -106,6 +108,7 @@ __all__ = [
     "__version__",
     "compare",
     "features",
+    "figure",
     "import_results",
     "match",
     "open_dataset",

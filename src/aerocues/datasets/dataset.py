@@ -177,9 +177,18 @@ class Source:
 class Dataset:
     """Images, and the pairs of images to match.
 
-    ``geometry`` is the model that relates two images: a homography (plane or rotation) or epipolar
-    geometry. ``settings`` records how the dataset was made (pairs, size, equalisation). ``source``
-    is how to open it again, if known; no measurement depends on it.
+    Parameters
+    ----------
+    name : str
+    images : sequence of Image
+        Decoded on demand.
+    pairs : sequence of Pair
+    geometry : {"homography", "epipolar"}
+        What relates two images: a homography (plane or rotation) or epipolar geometry.
+    settings : tuple of (str, str)
+        How the dataset was made: pairs, size, equalisation.
+    source : Source or None
+        How to open it again, if known; no measurement depends on it.
     """
 
     name: str

@@ -65,7 +65,7 @@ def _open(layout: Layout, folder: Path, options: Options) -> Dataset:
         homography = layout.homography.format(number=2)
         raise DatasetError(
             f"{folder} has no {layout.name} sequence (folders with images 1, 2, ... and files "
-            f"{homography}, ...); `aerocues datasets fetch {layout.name} --to DIR` downloads them"
+            f"{homography}, ...); 'aerocues datasets fetch {layout.name} --to DIR' downloads them"
         )
     images: list[Image] = []
     pairs: list[Pair] = []

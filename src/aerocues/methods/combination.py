@@ -12,7 +12,18 @@ METHOD_NAME = re.compile(r"[A-Z0-9_]+")
 
 @dataclass(frozen=True, order=True)
 class Combination:
-    """What is evaluated: ``ORB-BEBLID-HAM-BF`` reads detector, descriptor, norm, matcher."""
+    """What is evaluated; its text form is ``ORB-BEBLID-HAM-BF``.
+
+    Parameters
+    ----------
+    detector, descriptor, norm, matcher : str
+        Names of methods in capitals, as 'aerocues methods' lists them.
+
+    Raises
+    ------
+    SelectionError
+        If a name is malformed.
+    """
 
     detector: str
     descriptor: str

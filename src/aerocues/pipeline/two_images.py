@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,8 @@ ImageLike = str | Path | NDArray[np.uint8] | Image
 """An image file, a (H, W, 3) BGR or (H, W) gray uint8 array, or an image of a dataset."""
 
 
+INLIER = (233, 180, 86)
+"""Sky blue of Okabe and Ito; blue, green, red."""
 FoundGeometry = Literal["fundamental matrix", "homography"]
 
 
@@ -75,6 +78,42 @@ class MatchedImages:
             f"{len(self.features_2):,} keypoints, {len(self.matches):,} matches, "
             f"{int(self.inliers.sum()):,} inliers {found}{chance}"
         )
+
+    def picture(self, width: int = 1200, lines: int = 100) -> NDArray[np.uint8]:
+        """Both images side by side: a dot at each inlier, and lines between some of them.
+
+        Parameters
+        ----------
+        width : int
+            Pixels.
+        lines : int
+            How many to draw at most, a seeded sample.
+
+        Returns
+        -------
+        (H, `width`, 3) uint8
+            Blue, green, red.
+        """
+        first, second = self.images
+        height, offset = max(first.shape[0], second.shape[0]), first.shape[1]
+        canvas = np.full((height, offset + second.shape[1], 3), 255, np.uint8)
+        canvas[: first.shape[0], :offset] = first
+        canvas[: second.shape[0], offset:] = second
+        factor = width / canvas.shape[1]
+        size = (width, max(1, round(height * factor)))
+        shown = cv2.resize(canvas, size, interpolation=cv2.INTER_AREA)
+        moved = self.points_2 + np.array([offset, 0], np.float32)
+        matched = np.stack([self.points_1, moved], axis=1)[self.inliers]
+        ends = np.round((matched + 0.5) * factor * 16 - 8).astype(np.int32)
+        for start, end in np.random.default_rng(0).permutation(ends)[:lines].tolist():
+            cv2.line(shown, start, end, INLIER, 1, cv2.LINE_AA, shift=4)
+        for place in ends.reshape(-1, 2).tolist():
+            cv2.circle(shown, place, 24, INLIER, -1, cv2.LINE_AA, shift=4)
+        return np.asarray(shown, np.uint8)
+
+    def _repr_jpeg_(self) -> bytes:
+        _, content = cv2.imencode(".jpg", self.picture(), [cv2.IMWRITE_JPEG_QUALITY, 80])
+        return bytes(content)
 
 
 def features(

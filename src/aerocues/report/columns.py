@@ -124,14 +124,9 @@ def column_facts(
         Criteria of the score.
     """
     found = {}
-    success = rows["status"].is_in(list(succeeded)).to_numpy()
     for column in columns_for(criteria):
-        numbers = _numbers(rows, column.source or column.name)
-        if numbers is None:
-            continue
-        values = np.full(shape, np.nan)
-        values[positions] = np.where(success, numbers, np.nan) if column.of_success else numbers
-        if not np.isnan(values).all():
+        values = column_values(rows, column, positions, shape, succeeded)
+        if values is not None:
             found[column.name] = {
                 "unit": column.unit,
                 "better": column.better,
@@ -139,6 +134,26 @@ def column_facts(
                 "values": packed_floats(values),
             }
     return found
+
+
+def column_values(
+    rows: pl.DataFrame,
+    column: PairColumn,
+    positions: tuple[NDArray[np.int64], NDArray[np.int64]],
+    shape: tuple[int, int],
+    succeeded: Sequence[str],
+) -> NDArray[np.float64] | None:
+    """(combinations, pairs) float64 of one figure, NaN where it is not known; None if it never is.
+
+    The parameters are those of `column_facts`.
+    """
+    numbers = _numbers(rows, column.source or column.name)
+    if numbers is None:
+        return None
+    success = rows["status"].is_in(list(succeeded)).to_numpy()
+    values = np.full(shape, np.nan)
+    values[positions] = np.where(success, numbers, np.nan) if column.of_success else numbers
+    return None if np.isnan(values).all() else values
 
 
 def _numbers(rows: pl.DataFrame, source: str) -> NDArray[np.float64] | None:

@@ -64,7 +64,7 @@ def draw_relation(found: ReportEntry) -> Figure | None:
     from matplotlib.figure import Figure
 
     known = [row for row in ordered_models(found) if row["points_3d"] is not None]
-    column, means = _means(found)
+    column, means = means_of_pairs(found)
     known = [row for row in known if np.isfinite(means.get(row["name"], np.nan))]
     if not known:
         return None
@@ -89,7 +89,7 @@ def draw_relation(found: ReportEntry) -> Figure | None:
     return figure
 
 
-def _means(found: ReportEntry) -> tuple[str, dict[str, float]]:
+def means_of_pairs(found: ReportEntry) -> tuple[str, dict[str, float]]:
     """Mean inliers over the successful pairs, beyond chance if that was measured."""
     import polars as pl
 

@@ -33,7 +33,7 @@ def draw_pareto(found: ReportEntry) -> Figure | None:
     if not validation.pareto_criteria:
         return None
     criterion, seconds = validation.pareto_criteria[1], found.seconds()
-    quality = _counted(scores, criterion)
+    quality = quality_as_scored(scores, criterion)
     speed = np.array([seconds.get(name, np.nan) for name in found.combinations])
     if np.isnan(speed).all():
         return None
@@ -65,7 +65,7 @@ def draw_pareto(found: ReportEntry) -> Figure | None:
     return figure
 
 
-def _counted(scores: Scores, criterion: str) -> NDArray[np.float64]:
+def quality_as_scored(scores: Scores, criterion: str) -> NDArray[np.float64]:
     """(combinations,) means of a criterion in its unit, with failures as in the score."""
     column = scores.table.criterion_names.index(criterion)
     values = scores.table.values[:, :, column]

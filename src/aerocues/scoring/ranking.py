@@ -68,7 +68,7 @@ class Ranking:
         if not len(scores.order):
             return told
         best = names[scores.best]
-        equal = len(self.indistinguishable()) - 1
+        equal = len(set(self.indistinguishable()) - {best})
         chance = likelihood(float(self.resampled.probability_best()[scores.best]))
         others = f"; {equal} more cannot be told from it" if equal else ""
         value = f"{scores.scores[scores.best]:.3f}"

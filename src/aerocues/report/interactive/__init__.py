@@ -1,0 +1,1 @@
+"""The figures of the page as Plotly figures, for notebooks and programs."""
