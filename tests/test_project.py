@@ -136,12 +136,15 @@ def test_every_package_has_its_place_in_the_guide(
     [contract] = [
         each for each in project["tool"]["importlinter"]["contracts"] if each["type"] == "layers"
     ]
-    packages = [name for layer in contract["layers"] for name in layer.split(" | ")]
+    source = repository / "src" / "aerocues"
+    layers = [name for layer in contract["layers"] for name in layer.split(" | ")]
+    packages = [name for name in layers if (source / name).is_dir()]
     table = (repository / "CONTRIBUTING.md").read_text(encoding="utf-8")
     rows = "".join(re.findall(r"^\| (`.*?) \|", table, re.MULTILINE))
-    assert re.findall(r"`(\w+)`", rows) == packages
+    assert [name for name in re.findall(r"`(\w+)`", rows) if name in packages] == packages
     picture = (repository / "docs" / "architecture.svg").read_text(encoding="utf-8")
-    assert re.findall(r'font-weight="650".*?>(\w+)<', picture)[-len(packages) :] == packages
+    drawn = re.findall(r'font-weight="650".*?>(\w+)<', picture.rpartition("Which package")[2])
+    assert [name for name in drawn if name in packages] == packages
 
 
 def test_what_the_demo_leaves_is_removed(repository: Path) -> None:

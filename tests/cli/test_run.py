@@ -25,7 +25,7 @@ def test_a_run_ends_with_the_best_and_what_to_do_next(
     assert re.search(r"rows +2: ok 2\ntimes +exclusive 2\b", first.out)
     assert f"aerocues status '{output}'" in first.out
     assert f"aerocues score '{output}'" in first.out
-    assert "measured 2 rows" in first.err
+    assert "timed 2 alone" in first.err
 
     second = call(*words, "--max-pairs", 2)
     assert "all 2 rows" in second.err
@@ -114,7 +114,7 @@ def test_a_run_tells_what_gray_images_rule_out(call: Call, photos: Path, tmp_pat
     assert re.search(r"rows +0: none", alone.out)
 
     mixed = (*words, "--combinations", "ORB-LUCID-HAM-*,ORB-ORB-HAM-BF")
-    for outcome in ("measured 2 rows", "all 2 rows"):
+    for outcome in ("timed 2 alone", "all 2 rows"):
         answer = call(*mixed)
         assert answer.code == 0
         assert told in answer.err

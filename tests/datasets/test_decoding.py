@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image as PillowImage
 
 from aerocues.datasets.decoding import FileSource
-from aerocues.errors import DatasetError, ImageError
+from aerocues.errors import ArgumentError, ImageError
 
 Bgr = NDArray[np.uint8]
 
@@ -214,7 +214,7 @@ def test_equalisation_spreads_the_luminance(tmp_path: Path, picture: Bgr) -> Non
 
 @pytest.mark.parametrize("settings", [{"max_width": 0}, {"equalize": "magic"}])
 def test_senseless_settings_are_refused(tmp_path: Path, settings: dict[str, Any]) -> None:
-    with pytest.raises(DatasetError):
+    with pytest.raises(ArgumentError):
         FileSource(tmp_path / "a.png", **settings)
 
 

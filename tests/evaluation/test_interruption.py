@@ -152,7 +152,7 @@ def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -
 
 def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path, closed_disk: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(2))
-    with pytest.raises(StoreError, match=r"Read-only.*-o"):
+    with pytest.raises(StoreError, match="Read-only"):
         run(dataset, "ORB-ORB-HAM-BF", closed_disk / "results", engine=InlineEngine())
 
 

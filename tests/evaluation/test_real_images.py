@@ -18,7 +18,6 @@ from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.methods.registry import opencv_methods
-from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.correspondence import transfer
 from aerocues.pipeline.protocol import MeasurementProtocol
@@ -51,7 +50,7 @@ def test_sift_on_graf_is_right_by_the_truth(graf: Dataset, tmp_path: Path) -> No
 def test_exact_search_changes_no_row_of_any_combination(graf: Dataset, tmp_path: Path) -> None:
     near = Dataset(graf.name, graf.images, graf.pairs[:1], graf.geometry)
     # TBMR differs from call to call.
-    words: dict[str, Any] = {"combinations": "*,!TBMR-*", "limit": KeypointLimit(800)}
+    words: dict[str, Any] = {"combinations": "*,!TBMR-*", "max_keypoints": 800}
     tables = [
         run(near, output=tmp_path / timing, timing=timing, features=tmp_path / "kept", **words)
         for timing in ("shared", "estimated")

@@ -83,7 +83,7 @@ def test_full_names_select_exactly_themselves(wanted: list[str], unwanted: list[
         ("SIFT-ORB-HAM-BF", "72 GB"),
         ("*-AKAZE-L2-FLANN", "needs what only keypoints of AKAZE or KAZE carry"),
         ("ORB-*-L2-FLANN,SIFT-ORB-*", "selects nothing that can run"),
-        ("ORB-ORB-L2-*", "--all runs it all the same"),
+        ("ORB-ORB-L2-*", "everything=True"),
         ("ORB-BEBLIT-HAM-BF", "did you mean ORB-BEBLID-HAM-BF"),
         ("nonsense", "aerocues methods"),
         ("ORB-ORB-HAM-BF,!ORB-*", "empty"),

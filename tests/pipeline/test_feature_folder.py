@@ -13,7 +13,6 @@ from aerocues.errors import StoreError
 from aerocues.evaluation.run import run
 from aerocues.methods.arrays import Features, Keypoints
 from aerocues.methods.presets import Preset
-from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline import feature_folder
 from aerocues.pipeline.clock import StageTime
 from aerocues.pipeline.feature_folder import FeatureFolder, checked_folder
@@ -84,7 +83,7 @@ def test_another_run_finds_what_one_kept(
         ({"timing": "estimated"}, (0, 0)),
         ({"timing": "exclusive"}, (8, 16)),
         ({"seed": 1}, (8, 16)),
-        ({"limit": KeypointLimit(100)}, (8, 16)),
+        ({"max_keypoints": 100}, (8, 16)),
         ({"preset": Preset("b", "b", True, {}, {"BRIEF": {"bytes": 32}})}, (0, 4)),
         ({"preset": Preset("o", "o", True, {"ORB": {"nlevels": 3}})}, (4, 8)),
     ],

@@ -43,7 +43,7 @@ def test_events_count_what_is_there() -> None:
     ]
     assert [event.message for event in events if event.message] == [
         "left out: 1 combination, because images are gray",
-        "1 of 3 models already exist",
+        "1 of 3 models are already finished",
         "2 of 3  ORB-ORB-HAM-BF  ok: 12 of 18 images, 1,323 points, 0.97 px, 0.7 m",
     ]
     assert [row["status"] for row in events[-1].rows] == ["ok"]

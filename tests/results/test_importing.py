@@ -290,7 +290,7 @@ def test_what_is_in_use_for_something_else_is_refused(table: Path, tmp_path: Pat
     (tmp_path / "photos" / "trip").mkdir(parents=True)
     with pytest.raises(StoreError, match="trip"):
         import_results(several, tmp_path / "photos")
-    with pytest.raises(StoreError, match=r"other\.csv.*-o"):
+    with pytest.raises(StoreError, match=r"other\.csv"):
         import_results(table, other)
     assert (out / "notes.txt").read_text() == "mine"
     assert len(Results(out).table()) == 4

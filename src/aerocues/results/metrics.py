@@ -37,7 +37,7 @@ def _excess(row: Mapping[str, Any]) -> float | None:
 
 def _right_matches(threshold: int) -> Callable[[Mapping[str, Any]], float | None]:
     def compute(row: Mapping[str, Any]) -> float | None:
-        score = row[f"ref_matching_score@{threshold}"]
+        score = row.get(f"ref_matching_score@{threshold}")
         return None if score is None else float(round(score * row["keypoints_1"]))
 
     return compute
