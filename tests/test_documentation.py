@@ -257,7 +257,7 @@ def run_command(folder: Path, command: str, shown: str, *, exact: bool) -> None:
             command = re.sub(r"--scheduler \S+", f"--scheduler {address}", command)
         done = run_in(folder, "bash", "-o", "pipefail", "-c", command)
     # The stand-in views are too much alike for a model, which `reconstruct` ends with 1 for.
-    no_model = "no combination reconstructs the scene" in done.stdout
+    no_model = "no combination reconstructs the flight correctly" in done.stdout
     expected = 1 if command.startswith("aerocues reconstruct") and no_model else 0
     assert done.returncode == expected, f"{command}\n{done.stdout}\n{done.stderr}"
     if exact:

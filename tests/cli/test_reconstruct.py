@@ -39,7 +39,7 @@ def test_models_from_results_and_figures_into_them(
 ) -> None:
     results, models = tmp_path / "results", tmp_path / "models"
     wanted = f"{NAMES},ORB-ORB-HAM-BF"
-    few = ("--combinations", wanted, "--timing", "shared", "--limit", 5, "--workers", 1)
+    few = ("--combinations", wanted, "--timing", "shared", "--max-pairs", 5, "--workers", 1)
     assert call("run", flight, "-o", results, *few).code == 0
     words = ("reconstruct", flight, "-o", models, "--from", results, "--top", 2, *OPTIONS)
     answer = call(*words)

@@ -115,7 +115,7 @@ def test_nonsense_in_the_address_does_no_harm(open_report: Open) -> None:
         "#q=%3Cimg%20src%3Dx%3E&entry=none&sort=-nothing&rows=x&columns=,,&heat.value=zzz"
         "&theme=blue&pareto.colour=__proto__&%E0%A4%A"
     )
-    assert "No combination" in opened.page.inner_text("#filter-help")
+    assert "combination begins with" in opened.page.inner_text("#filter-help")
     opened.page.fill("#filter", "")
     opened.figure("heat")
     assert opened.page.input_value("#figure-heat select") == "score"
