@@ -64,11 +64,13 @@ class Flow:
         x, y = np.clip(np.nan_to_num(at), 0, (width - 1, height - 1)).T
         left = np.minimum(x.astype(np.intp), max(width - 2, 0))
         top = np.minimum(y.astype(np.intp), max(height - 2, 0))
-        u, v = (x - left)[:, None], (y - top)[:, None]
-        above = (1 - u) * self.steps[top, left] + u * self.steps[top, left + 1]
-        below = (1 - u) * self.steps[top + 1, left] + u * self.steps[top + 1, left + 1]
-        step = ((1 - v) * above + v * below) / STEPS_PER_PIXEL
-        return np.where(inside[:, None], step, np.nan)
+        u, v = x - left, y - top
+        first = top * width + left
+        corners = self.steps.reshape(-1, 2)[[first, first + 1, first + width, first + width + 1]]
+        shares = np.array([(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v]) / STEPS_PER_PIXEL
+        step = np.einsum("cn,cnk->nk", shares, corners)
+        step[~inside] = np.nan
+        return step
 
 
 @dataclass(frozen=True, eq=False)
