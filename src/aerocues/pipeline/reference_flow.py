@@ -68,7 +68,7 @@ class Flow:
         first = top * width + left
         corners = self.steps.reshape(-1, 2)[[first, first + 1, first + width, first + width + 1]]
         shares = np.array([(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v]) / STEPS_PER_PIXEL
-        step = np.einsum("cn,cnk->nk", shares, corners)
+        step: NDArray[np.float64] = np.einsum("cn,cnk->nk", shares, corners)
         step[~inside] = np.nan
         return step
 
