@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import ImageError, MethodFailedError, SelectionError
+from aerocues.errors import ArgumentError, ImageError, MethodFailedError, SelectionError
 from aerocues.methods.presets import Preset
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
@@ -90,7 +90,7 @@ def test_wrong_arguments_are_errors(tmp_path: Path) -> None:
         Pipeline("ORB-ORB-HAM-*")
     with pytest.raises(SelectionError):
         Pipeline("ORB-SIFT-HAM-BF")
-    with pytest.raises(SelectionError):
+    with pytest.raises(ArgumentError):
         Pipeline("ORB-ORB-HAM-BF", max_keypoints=-1)
     pipeline = Pipeline("ORB-ORB-HAM-BF")
     with pytest.raises(ImageError):
