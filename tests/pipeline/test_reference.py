@@ -17,7 +17,8 @@ from aerocues.evaluation.depth_correspondence import DepthCorrespondence
 from aerocues.pipeline import reference
 from aerocues.pipeline.correspondence import PlaneCorrespondence, transfer
 from aerocues.pipeline.reference import FLOW, Reference, ReferenceBuilder
-from aerocues.pipeline.reference_flow import FlowCorrespondence
+from aerocues.pipeline.reference_flow import FlowCorrespondence, find_flow
+from aerocues.pipeline.reference_seeds import Seeds
 from tests.methods.pictures import textured
 from tests.reconstruction.scenes import write_scene
 
@@ -147,6 +148,16 @@ def test_images_of_different_things_have_no_reference() -> None:
     assert found.flow is None
     assert found.turn is None
     assert found.correspondence(Pixels(textured(*SIZE)), Pixels(textured(*SIZE))) is None
+
+
+def test_few_seeds_and_seeds_of_the_same_pixel_make_a_flow() -> None:
+    """OpenCV's interpolator reads foreign memory where a seed lacks neighbours."""
+    first, second = warped(np.array([[1.0, 0.0, 4.0], [0.0, 1.0, -3.0], [0.0, 0.0, 1.0]]))
+    points = np.random.default_rng(0).uniform(20, 200, (20, 2)).astype(np.float32)
+    points = np.concatenate([points, points[:12]])
+    moved = points + np.array((4, -3), np.float32)
+    flow = find_flow(first, second, Seeds(points, moved))
+    assert np.abs(flow.moved(points) - moved).max() < 0.5
 
 
 @pytest.mark.parametrize("picture", ["black", "tiny"])

@@ -22,7 +22,7 @@ from aerocues.pipeline.reference_flow import (
 from aerocues.pipeline.reference_seeds import NoReferenceError, SeedMethods
 
 # Raised whenever the same images would give another reference.
-REFERENCE_VERSION = 1
+REFERENCE_VERSION = 2
 FLOW = "flow"
 """The verdict where there is a reference."""
 

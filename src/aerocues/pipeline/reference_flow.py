@@ -165,14 +165,25 @@ def _start(
     """A flow (H, W, 2) between the seeds that keeps to the edges of the picture; None if too few.
 
     Revaud et al., EpicFlow: edge-preserving interpolation of correspondences for optical flow, CVPR
-    2015, as OpenCV has it.
+    2015, as OpenCV has it. Where a seed has fewer neighbours than OpenCV is told to look at, it
+    reads memory that is not its own: each pixel has one seed, and no more are asked for.
     """
+    height, width = first.shape[:2]
+    seeds = _one_a_pixel(seeds, (height, width))
     if len(seeds) < FEWEST_STARTS:
         return None
     interpolator = cv2.ximgproc.createEdgeAwareInterpolator()
-    interpolator.setK(NEAREST_STARTS)
+    interpolator.setK(min(NEAREST_STARTS, len(seeds)))
     interpolator.setUsePostProcessing(False)
     found: NDArray[np.float32] = interpolator.interpolate(
         first, seeds.points_1, warped, seeds.points_2
     )
-    return found
+    largest = np.float32(max(height, width))
+    moves: NDArray[np.float32] = np.clip(np.nan_to_num(found), -largest, largest)
+    return moves
+
+
+def _one_a_pixel(seeds: Seeds, shape: tuple[int, int]) -> Seeds:
+    """The first seed of each pixel of image 1."""
+    pixels = np.clip(np.floor(seeds.points_1 + 0.5), 0, (shape[1] - 1, shape[0] - 1))
+    return seeds.take(np.sort(np.unique(pixels, axis=0, return_index=True)[1]))
