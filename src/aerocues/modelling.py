@@ -35,10 +35,11 @@ def reconstruct(
     top: int | None = None,
     preset: str | Preset | None = None,
     max_keypoints: int = FLIGHT_KEYPOINTS,
-    intrinsics: Intrinsics = "fixed",
+    intrinsics: Intrinsics = "calibrated",
     focal_length: float | None = None,
     mapper: Mapper = "incremental",
     reference: str | Combination | None = None,
+    baseline: bool = True,
     colours: bool = True,
     undistort: bool = False,
     seed: int = 0,
@@ -73,14 +74,19 @@ def reconstruct(
         Parameters of the methods; by default those of `results`, or ``"default"``.
     max_keypoints : int
         The strongest keypoints that are kept in an image; 0 keeps all.
-    intrinsics : {"fixed", "refine"}
-        Whether focal length and distortion are those known before, or adjusted with the model.
+    intrinsics : {"calibrated", "fixed", "refine"}
+        ``calibrated``: focal length and distortion are estimated once for all models, by COLMAP's
+        default, if the images determine them. ``fixed``: they stay at known values. ``refine``:
+        they are adjusted with each model.
     focal_length : float, optional
         Pixels, in place of what EXIF tells.
     mapper : {"incremental", "global"}
         Of COLMAP.
     reference : str or Combination, optional
-        To whose cloud distances are measured; the largest model by default.
+        To whose cloud distances are measured; the best model by default.
+    baseline : bool
+        Whether COLMAP's default is a row of the table, too: its own SIFT and matcher, a camera
+        that it refines, and the same number of features.
     colours, undistort : bool
         Whether points are coloured; whether undistorted images are written for a dense step.
     seed : int
@@ -127,6 +133,7 @@ def reconstruct(
         workers=workers,
         timeout=timeout,
         memory_limit=memory_limit,
+        baseline=baseline,
         retry_failed=retry_failed,
     )
     scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)

@@ -11,7 +11,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.reconstruction.models import Models
 from tests.reconstruction.scenes import Options, write_scene
 
-OPTIONS: Options = {"max_keypoints": 1000}
+OPTIONS: Options = {"max_keypoints": 1000, "baseline": False}
 COMBINATIONS = "SIFT-SIFT-L2-FLANN,ORB-ORB-HAM-BF"
 
 

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from aerocues.methods.arrays import Keypoints
-from aerocues.reconstruction.diagnosis import Placement, judged, without_features, without_links
+from aerocues.reconstruction.alignment import Similarity
+from aerocues.reconstruction.diagnosis import judged, without_features, without_links
 from aerocues.reconstruction.match_graph import parts_of, told_parts
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
 from aerocues.reconstruction.protocol import Requirements
+from aerocues.reconstruction.truth import Located, TruePositions
 
 IMAGES = ["a", "b", "c", "d", "e", "f"]
 WHOLE = {("a", "b"): 200, ("b", "c"): 80, ("c", "d"): 40, ("d", "e"): 30, ("e", "f"): 20}
@@ -107,20 +109,26 @@ def test_an_incomplete_model_tells_the_parts_or_what_is_left_out() -> None:
     assert judged(IMAGES, IMAGES, WHOLE, None, Requirements()).message is None
 
 
+def located(errors: dict[str, float]) -> Located:
+    """Cameras that are so many metres too far east, of which 5 are allowed."""
+    differences = {name: np.array([error, 0.0, 0.0]) for name, error in errors.items()}
+    truth = TruePositions("gps", dict.fromkeys(errors, np.zeros(3)))
+    frame = Similarity(1.0, np.eye(3), np.zeros(3))
+    return Located(truth, frame, differences, np.array([5.0, 5.0, 10.0]))
+
+
 def test_a_model_with_cameras_far_from_their_place() -> None:
     near = dict.fromkeys(IMAGES, 0.7)
-    placement = Placement({**near, "b": 23.14}, 5.0, "gps")
-    outcome = judged(IMAGES, IMAGES, WHOLE, placement, Requirements())
+    outcome = judged(IMAGES, IMAGES, WHOLE, located({**near, "b": 23.14}), Requirements())
     assert outcome.status == "ok"
     assert outcome.message == (
         "1 of 6 cameras is more than 5.0 m from its true position (gps): b (23.1 m)"
     )
-    placement = Placement({**near, "b": 23.14, "d": 30.0}, 5.0, "gps")
-    outcome = judged(IMAGES, IMAGES, WHOLE, placement, Requirements())
+    far = located({**near, "b": 23.14, "d": 30.0})
+    outcome = judged(IMAGES, IMAGES, WHOLE, far, Requirements())
     assert outcome.status == "misplaced"
     assert outcome.message == (
         "2 of 6 cameras are more than 5.0 m from their true positions (gps): d (30.0 m), "
         "b (23.1 m); the model is bent or wrongly joined"
     )
-    placement = Placement(near, 5.0, "gps")
-    assert judged(IMAGES, IMAGES, WHOLE, placement, Requirements()).message is None
+    assert judged(IMAGES, IMAGES, WHOLE, located(near), Requirements()).message is None

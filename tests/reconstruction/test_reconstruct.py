@@ -162,7 +162,7 @@ def test_refined_intrinsics_and_undistorted_images(
     made = aerocues.reconstruct(scene_of(images), SIFT, empty, **options)
     row = row_of(made, SIFT)
     assert row["status"] == "ok"
-    assert row["intrinsics"] == "refine (guessed)"
+    assert row["intrinsics"] == "refined (guessed)"
     assert row["position_rmse"] is None
     assert (row["length_unit"], row["cloud_distance_rms"]) == ("unit", 0)
     dense = made.path(SIFT) / "undistorted"
@@ -175,7 +175,7 @@ def test_a_focal_length_that_is_not_known_must_be_given_to_stay_fixed(
 ) -> None:
     images = [replace(image, truth=None) for image in landscape.images]
     with pytest.raises(ReconstructionError, match=r"9 of 9 .* `focal_length`"):
-        aerocues.reconstruct(scene_of(images), SIFT, empty, **quick)
+        aerocues.reconstruct(scene_of(images), SIFT, empty, **{**quick, "intrinsics": "fixed"})
 
 
 def test_scenes_that_have_no_depth_are_refused(empty: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from aerocues.reconstruction.images import (
     cameras_of,
     prepare_image,
     read_prepared,
+    require_focal_lengths,
     write_prepared,
 )
 from aerocues.reconstruction.opening import open_scene
@@ -87,12 +87,12 @@ def test_images_of_one_size_and_focal_length_share_a_camera(tmp_path: Path) -> N
 def test_a_focal_length_that_is_not_known_may_be_refined_only(tmp_path: Path) -> None:
     dataset = write_scene(tmp_path, [(0, 0), (9, 0)], truth=False)
     prepared = [Prepared(image.name, 480, 360, None) for image in dataset.images]
-    with pytest.raises(ReconstructionError, match=r"2 of 2 .* `focal_length` in pixels"):
-        cameras_of(dataset, prepared, ReconstructionProtocol())
-    [camera] = cameras_of(dataset, prepared, ReconstructionProtocol(intrinsics="refine"))
+    refined = ReconstructionProtocol(intrinsics="refine")
+    [camera] = cameras_of(dataset, prepared, refined)
     assert (camera.parameters, camera.source) == ((), "guessed")
-    known = replace(dataset, images=[replace(dataset.images[0]), dataset.images[1]])
-    assert len(known.images) == 2
+    require_focal_lengths([camera], refined)
+    with pytest.raises(ReconstructionError, match=r"2 of 2 .* `focal_length` in pixels"):
+        require_focal_lengths([camera], ReconstructionProtocol())
 
 
 def test_prepared_images_are_remembered_until_they_change(tmp_path: Path) -> None:

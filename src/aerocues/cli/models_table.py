@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import plain_table, print_table, standard_output
-from aerocues.results.combination_columns import METHODS, name_in_row
+from aerocues.results.combination_columns import combination_name, name_in_row
+from aerocues.results.model_quality import best_first
+from aerocues.results.reconstruction_schema import BASELINE
 
 if TYPE_CHECKING:
     import polars as pl
@@ -17,50 +19,41 @@ if TYPE_CHECKING:
 INDENT = "  "
 
 
-def ordered(table: pl.DataFrame) -> pl.DataFrame:
-    """Successful models first, then by images, then by points.
-
-    Not by reprojection error: broken models have the lowest.
-    """
-    import polars as pl
-
-    return table.sort(
-        pl.col("status") != "ok",
-        -pl.col("registered_images").fill_null(0),
-        -pl.col("points_3d").fill_null(0),
-        *METHODS,
-    )
-
-
 def print_models(models: Models) -> None:
     """Print all models of a folder."""
     from rich.text import Text
 
-    table = ordered(models.table())
+    table = best_first(models.table())
     console = standard_output()
-    located = table["position_rmse"].is_not_null().any()
-    headings = ["images", "points", "track\nlength", "error\npx"]
+    located = table["truth"].is_not_null().any()
+    headings = ["images", "points", "in 3\nimages", "track\nlength", "error\npx"]
     headings += ["in\nplace", "off\nm"] if located else []
     headings += ["features\ns", "matches\ns", "model\ns"]
     output = plain_table("combination", "status", *headings, numbers=len(headings), gap=1)
     output.columns[0].no_wrap = True
     for row in table.iter_rows(named=True):
         output.add_row(name_in_row(row), row["status"], *_figures(row, located))
-    first = table.row(0, named=True)
-    title = (
-        f"{first['dataset']}: {first['images']} images, {first['pairs']} pairs "
-        f"({first['pairing']}), intrinsics {first['intrinsics']}, {first['mapper']} mapper"
-    )
-    console.print(Text(title, style="bold"))
+    console.print(Text(_title(table), style="bold"))
     print_table(console, output)
     for line in _notes(table):
         console.print(line, soft_wrap=True, markup=False)
+
+
+def _title(table: pl.DataFrame) -> str:
+    """What all combinations have in common; COLMAP's default has its own."""
+    others = of_combinations(table)
+    first = (others if len(others) else table).row(0, named=True)
+    return (
+        f"{first['dataset']}: {first['images']} images, {first['pairs']} pairs "
+        f"({first['pairing']}), intrinsics {first['intrinsics']}, {first['mapper']} mapper"
+    )
 
 
 def _figures(row: Mapping[str, Any], located: bool) -> list[str]:
     cells = [
         f"{row['registered_images'] or 0}/{row['images']}",
         _number(row["points_3d"], ",.0f"),
+        _number(row["points_in_3_images"], ",.0f"),
         _number(row["mean_track_length"], ".2f"),
         _number(row["reprojection_error"], ".2f"),
     ]
@@ -76,18 +69,33 @@ def _number(value: float | None, form: str) -> str:
 
 
 def _notes(table: pl.DataFrame) -> list[str]:
-    """Why models failed or are incomplete, and the reference of distances."""
-    import polars as pl
-
+    """COLMAP's default in comparison, why models failed, and the reference of distances."""
     lines = []
-    if table["status"].is_in(["ok"]).sum() == 0:
+    if "ok" not in of_combinations(table)["status"]:
         lines.append("no combination reconstructs the flight correctly")
-    told = table.filter((pl.col("status") != "ok") | pl.col("message").is_not_null())
-    for row in told.iter_rows(named=True):
-        name = name_in_row(row)
-        line = f"{name}: {row['message'] or row['status']}"
-        lines += textwrap.wrap(line, 98, subsequent_indent=INDENT)
+    if len(of_combinations(table)) < len(table):
+        lines.append(_compared(table))
+    told: dict[str, list[str]] = {}
+    for row in table.iter_rows(named=True):
+        if row["status"] != "ok" or row["message"]:
+            told.setdefault(row["message"] or row["status"], []).append(name_in_row(row))
+    for message, names in told.items():
+        line = f"{', '.join(names)}: {message}"
+        lines += textwrap.wrap(line, 98, subsequent_indent=INDENT, break_on_hyphens=False)
     references = table["reference"].drop_nulls().unique().to_list()
     if references:
         lines.append(f"cloud distances in the table are to {references[0]}")
     return ["", *lines] if lines else []
+
+
+def _compared(table: pl.DataFrame) -> str:
+    """Whether any combination beats COLMAP's default."""
+    best = table.row(0, named=True)
+    if name_in_row(best) == str(BASELINE) and best["status"] == "ok":
+        return f"no combination beats COLMAP's default ({BASELINE}): take that"
+    return f"{BASELINE} is COLMAP's default: its own SIFT and matcher, and a camera that it refines"
+
+
+def of_combinations(table: pl.DataFrame) -> pl.DataFrame:
+    """The rows without that of COLMAP's default."""
+    return table.filter(combination_name() != str(BASELINE))

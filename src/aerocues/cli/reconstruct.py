@@ -35,6 +35,7 @@ NOTHING_SUCCEEDED = 1
 class Intrinsics(StrEnum):
     """Values of ``--intrinsics``."""
 
+    CALIBRATED = "calibrated"
     FIXED = "fixed"
     REFINE = "refine"
 
@@ -78,8 +79,9 @@ def reconstruct(
     max_width: MaxWidthOption = None,
     equalize: Annotated[str | None, EQUALIZE] = None,
     intrinsics: Annotated[
-        Intrinsics, typer.Option(help="Keep or refine focal length and distortion.")
-    ] = Intrinsics.FIXED,
+        Intrinsics,
+        typer.Option(help="Focal length and distortion: calibrated once, from EXIF, or refined."),
+    ] = Intrinsics.CALIBRATED,
     focal_length: Annotated[
         float | None,
         typer.Option(metavar="PIXELS", help="Focal length, in place of the one in EXIF."),
@@ -89,9 +91,13 @@ def reconstruct(
         str | None,
         typer.Option(
             metavar="COMBINATION",
-            help="Reference of the cloud distances; by default the largest model.",
+            help="Reference of the cloud distances; by default the best model.",
         ),
     ] = None,
+    baseline: Annotated[
+        bool,
+        typer.Option("--baseline/--no-baseline", help="Add COLMAP's default to the table."),
+    ] = True,
     preset: Annotated[str | None, METHOD_PRESET] = None,
     seed: SeedOption = 0,
     colours: Annotated[
@@ -151,6 +157,7 @@ def reconstruct(
                 focal_length=focal_length,
                 mapper=mapper.value,
                 reference=reference,
+                baseline=baseline,
                 colours=colours,
                 undistort=undistort,
                 seed=seed,
@@ -169,10 +176,10 @@ def reconstruct(
 def _print(models: Models, dataset: str, results: Path | None) -> bool:
     """Print models and what to do next; whether any of them is a success."""
     from aerocues.cli.console import standard_output
-    from aerocues.cli.models_table import print_models
+    from aerocues.cli.models_table import of_combinations, print_models
 
     print_models(models)
-    succeeded = "ok" in models.table()["status"]
+    succeeded = "ok" in of_combinations(models.table())["status"]
     console = standard_output()
     for line in (
         f"\nmodels   {models.folder}",

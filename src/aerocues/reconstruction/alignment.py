@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
@@ -49,27 +48,37 @@ def similarity(source: Array, target: Array) -> Similarity | None:
     """
     if len(source) < FEWEST:
         return None
-    mean_source, mean_target = source.mean(axis=0), target.mean(axis=0)
-    from_mean, to_mean = source - mean_source, target - mean_target
-    if _on_a_line(from_mean) or _on_a_line(to_mean):
+    scales, rotations, translations, determined = _similarities(source[None], target[None])
+    if not determined[0]:
         return None
-    left, values, right = np.linalg.svd(to_mean.T @ from_mean)
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(left) * np.linalg.det(right))])
-    rotation = (left * signs) @ right
-    scale = float((values * signs).sum() / (from_mean**2).sum())
-    return Similarity(scale, rotation, mean_target - scale * rotation @ mean_source)
+    return Similarity(float(scales[0]), rotations[0], translations[0])
+
+
+def _similarities(source: Array, target: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    """Scale, rotation and translation of T sets of points, (T, N, 3), and which are determined."""
+    mean_source, mean_target = source.mean(axis=1), target.mean(axis=1)
+    from_mean, to_mean = source - mean_source[:, None], target - mean_target[:, None]
+    left, values, right = np.linalg.svd(np.swapaxes(to_mean, 1, 2) @ from_mean)
+    signs = np.ones_like(values)
+    signs[:, 2] = np.sign(np.linalg.det(left) * np.linalg.det(right))
+    rotations = (left * signs[:, None, :]) @ right
+    determined = ~(_on_a_line(from_mean) | _on_a_line(to_mean))
+    spread = (from_mean**2).sum(axis=(1, 2))
+    scales = (values * signs).sum(axis=1) / np.where(determined, spread, 1.0)
+    translations = mean_target - scales[:, None] * np.einsum("tij,tj->ti", rotations, mean_source)
+    return scales, rotations, translations, determined
 
 
 def robust_similarity(
-    source: Array, target: Array, tolerance: float, seed: int = 0
+    source: Array, target: Array, tolerance: float | Array, seed: int = 0
 ) -> Similarity | None:
     """The similarity that maps most source points to within a tolerance of the target (RANSAC).
 
     Parameters
     ----------
     source, target : (N, 3) float64
-    tolerance : float
-        In the unit of `target`.
+    tolerance : float or (3,) float64
+        In the unit of `target`: of the distance, or the half axes of an ellipsoid.
     seed : int
         Seed of the tried triples. All triples are tried if there are at most `MOST_TRIPLES`.
 
@@ -79,32 +88,37 @@ def robust_similarity(
         The least-squares similarity of the points within the tolerance; None if it is not
         determined.
     """
-    best: Similarity | None = None
-    best_found = (0, -np.inf)
-    for triple in _triples(len(source), seed):
-        found = similarity(source[triple], target[triple])
-        if found is None:
-            continue
-        errors = np.linalg.norm(found.apply(source) - target, axis=1)
-        quality = (int((errors <= tolerance).sum()), -float(np.median(errors)))
-        if quality > best_found:
-            best, best_found = found, quality
-    if best is None:
+    if len(source) < FEWEST:
+        return None
+    triples = _triples(len(source), seed)
+    scales, rotations, translations, determined = _similarities(source[triples], target[triples])
+    if not determined.any():
         return similarity(source, target)
-    near = np.linalg.norm(best.apply(source) - target, axis=1) <= tolerance
+    placed = np.einsum("tij,nj->tni", scales[:, None, None] * rotations, source)
+    shares = np.linalg.norm((placed + translations[:, None] - target) / tolerance, axis=2)
+    shares[~determined] = np.inf
+    # Most points first; of as many, those that are nearer.
+    order = np.lexsort((np.median(shares, axis=1), -(shares <= 1).sum(axis=1)))
+    first = int(order[0])
+    best = Similarity(float(scales[first]), rotations[first], translations[first])
+    near = np.linalg.norm((best.apply(source) - target) / tolerance, axis=1) <= 1
     return similarity(source[near], target[near]) or best
 
 
-def _triples(count: int, seed: int) -> Iterable[list[int]]:
+def _triples(count: int, seed: int) -> NDArray[np.intp]:
     if comb(count, FEWEST) <= MOST_TRIPLES:
-        return (list(triple) for triple in combinations(range(count), FEWEST))
+        return np.array(list(combinations(range(count), FEWEST)))
     generator = np.random.default_rng(seed)
-    return (generator.choice(count, FEWEST, replace=False).tolist() for _ in range(MOST_TRIPLES))
+    return np.array(
+        [generator.choice(count, FEWEST, replace=False) for _ in range(MOST_TRIPLES)], np.intp
+    )
 
 
-def _on_a_line(centred: Array) -> bool:
+def _on_a_line(centred: Array) -> NDArray[np.bool_]:
+    """Whether each set of points, (T, N, 3) about their means, lies on a line."""
     values = np.linalg.svd(centred, compute_uv=False)
-    return bool(values[1] <= ON_A_LINE * values[0])
+    found: NDArray[np.bool_] = values[:, 1] <= ON_A_LINE * values[:, 0]
+    return found
 
 
 def extent(positions: Array) -> float:

@@ -46,16 +46,15 @@ def open_database(file: Path) -> Any:
     import pycolmap
 
     opened = getattr(pycolmap.Database, "open", None)
-    if opened is not None and _major_minor() >= (3, 13):
+    if opened is not None and major_minor() >= (3, 13):
         return opened(file)
     older: Any = pycolmap.Database
     return older(str(file))
 
 
-def _major_minor() -> tuple[int, int]:
-    import pycolmap
-
-    major, minor = pycolmap.__version__.split(".")[:2]
+def major_minor() -> tuple[int, int]:
+    """Its version as numbers that compare."""
+    major, minor = colmap_version().split(".")[:2]
     return int(major), int(minor)
 
 

@@ -27,10 +27,7 @@ def write_database(
     dict of str to int
         COLMAP's IDs of the images.
     """
-    for old in file.parent.glob(f"{file.name}*"):  # including the files that SQLite keeps beside it
-        old.unlink()
-    open_database(file).close()
-    _import_images(file, scene)
+    new_database(file, scene)
     database = open_database(file)
     try:
         numbers = {str(image.name): int(image.image_id) for image in database.read_all_images()}
@@ -44,9 +41,13 @@ def write_database(
     return numbers
 
 
-def _import_images(file: Path, scene: Scene) -> None:
+def new_database(file: Path, scene: Scene) -> None:
+    """Make the database anew with cameras and images alone."""
     import pycolmap
 
+    for old in file.parent.glob(f"{file.name}*"):  # also what SQLite keeps beside it
+        old.unlink()
+    open_database(file).close()
     for group in scene.cameras:
         options = pycolmap.ImageReaderOptions()
         options.camera_model = group.model

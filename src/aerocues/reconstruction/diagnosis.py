@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from aerocues.reconstruction.alignment import root_mean_square
 from aerocues.reconstruction.colmap import open_database
 from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.protocol import Requirements
+from aerocues.reconstruction.truth import GPS_IN_PLAN, Located
 
 # COLMAP's requirements for the initial pair, after relaxing them twice.
 INITIAL_INLIERS = 25
@@ -99,37 +101,31 @@ def _xy(keypoints: Any) -> Any:
     return np.asarray(keypoints, np.float64)[:, :2]
 
 
-@dataclass(frozen=True)
-class Placement:
-    """Position errors of the cameras of a model in metres, and the tolerance."""
+def told_place(located: Located) -> str:
+    """``1 of 18 cameras is more than 5.0 m from its true position (gps): a (23.1 m)``."""
+    far, errors = located.far, located.errors
+    listed = ", ".join(f"{name} ({errors[name]:.1f} m)" for name in far[:LISTED])
+    more = ", ..." if len(far) > LISTED else ""
+    are, their = ("is", "its") if len(far) == 1 else ("are", "their")
+    return (
+        f"{len(far)} of {len(errors)} cameras {are} more than {located.tolerance[0]:.1f} m from "
+        f"{their} true position{'s' * (len(far) > 1)} ({located.truth.source}): {listed}{more}"
+    )
 
-    errors: Mapping[str, float]
-    tolerance: float
-    source: str
 
-    @property
-    def far(self) -> list[str]:
-        """Images whose cameras exceed the tolerance, the largest error first."""
-        names = [name for name, error in self.errors.items() if error > self.tolerance]
-        return sorted(names, key=lambda name: (-self.errors[name], name))
-
-    def told(self) -> str:
-        """``1 of 18 cameras is more than 5.0 m from its true position (GPS): a (23.1 m)``."""
-        far = self.far
-        listed = ", ".join(f"{name} ({self.errors[name]:.1f} m)" for name in far[:LISTED])
-        more = ", ..." if len(far) > LISTED else ""
-        are, their = ("is", "its") if len(far) == 1 else ("are", "their")
-        return (
-            f"{len(far)} of {len(self.errors)} cameras {are} more than {self.tolerance:.1f} m from "
-            f"{their} true position{'s' * (len(far) > 1)} ({self.source}): {listed}{more}"
-        )
+def _heights_left_out(located: Located) -> str:
+    heights = root_mean_square(np.array([each[2] for each in located.differences.values()]))
+    return (
+        f"GPS heights are not used: their error is {heights:.1f} m (root mean square), although "
+        "horizontal positions agree; either they are wrong, or the model is bent vertically"
+    )
 
 
 def judged(
     images: Sequence[str],
     in_model: Sequence[str],
     inliers: Mapping[Names, int],
-    placement: Placement | None,
+    located: Located | None,
     requirements: Requirements,
 ) -> Outcome:
     """Judge whether a model is complete and correctly placed.
@@ -140,7 +136,7 @@ def judged(
         All images of the scene, and those of the model.
     inliers : mapping of pairs to int
         Inliers of the verified pairs.
-    placement : Placement, optional
+    located : Located, optional
         Position errors, if positions are known.
     requirements : Requirements
     """
@@ -148,11 +144,13 @@ def judged(
     if len(in_model) < least:
         return Outcome("incomplete", _incomplete(images, in_model, inliers))
     told = []
-    if placement is not None and placement.far:
-        if len(in_model) - len(placement.far) < least:
+    if located is not None and located.far:
+        if len(in_model) - len(located.far) < least:
             what = "the model is bent or wrongly joined"
-            return Outcome("misplaced", f"{placement.told()}; {what}")
-        told.append(placement.told())
+            return Outcome("misplaced", f"{told_place(located)}; {what}")
+        told.append(told_place(located))
+    if located is not None and located.truth.source == GPS_IN_PLAN:
+        told.append(_heights_left_out(located))
     if len(in_model) < len(images):
         told.append(_incomplete(images, in_model, inliers))
     return Outcome("ok", "; ".join(told) or None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,9 @@ from aerocues.reconstruction.scene import IMAGES, CameraGroup
 from aerocues.results.whole_files import json_content, write_whole
 
 LIST = "images.json"
+GUESSED, EXIF = "guessed", "EXIF"
+# Where a focal length is from that a calibration may replace: neither the truth nor a user's own.
+CALIBRATABLE = (GUESSED, EXIF)
 JPEG_QUALITY = 95
 HALF_PIXEL = 0.5
 
@@ -100,43 +103,44 @@ def _exif_focal_length(source: FileSource, longer_side: int) -> float | None:
 def cameras_of(
     dataset: Dataset, prepared: list[Prepared], protocol: ReconstructionProtocol
 ) -> tuple[CameraGroup, ...]:
-    """The cameras of a scene: one per image size and focal length.
-
-    Raises
-    ------
-    ReconstructionError
-        If the intrinsics are fixed but unknown.
-    """
+    """The cameras of a scene: one per image size and focal length."""
     groups: defaultdict[tuple[Any, ...], list[str]] = defaultdict(list)
-    unknown = []
     for each in prepared:
         truth = dataset.image(each.name).truth
         if truth is not None:
             found = _true_camera(truth.camera)
         else:
             focal_length = protocol.focal_length or each.focal_length
-            source = "given" if protocol.focal_length else "EXIF"
-            found = _camera_of_size(each, focal_length, source)
-            if focal_length is None:
-                unknown.append(each.name)
+            found = _camera_of_size(each, focal_length, "given" if protocol.focal_length else EXIF)
         groups[(each.width, each.height, *found)].append(each.name)
-    if unknown and protocol.intrinsics == "fixed":
-        raise ReconstructionError(
-            f"the focal length of {len(unknown)} of {len(prepared)} images is not known "
-            f"({unknown[0]}, ...); give `focal_length` in pixels, or let the mapper estimate it "
-            'with `intrinsics="refine"`'
-        )
     return tuple(
         CameraGroup(model, parameters, source, tuple(names))
         for (_, _, model, parameters, source), names in groups.items()
     )
 
 
+def require_focal_lengths(cameras: Sequence[CameraGroup], protocol: ReconstructionProtocol) -> None:
+    """Refuse to keep intrinsics as they are where they are not known.
+
+    Raises
+    ------
+    ReconstructionError
+    """
+    unknown = [name for group in cameras if not group.parameters for name in group.names]
+    if unknown and not protocol.refined:
+        total = sum(len(group.names) for group in cameras)
+        raise ReconstructionError(
+            f"the focal length of {len(unknown)} of {total} images is not known "
+            f"({unknown[0]}, ...); give --focal-length PIXELS, or let the mapper estimate it with "
+            "--intrinsics refine"
+        )
+
+
 def _camera_of_size(
     image: Prepared, focal_length: float | None, source: str
 ) -> tuple[str, tuple[float, ...], str]:
     if focal_length is None:
-        return "SIMPLE_RADIAL", (), "guessed"
+        return "SIMPLE_RADIAL", (), GUESSED
     return "SIMPLE_RADIAL", (focal_length, image.width / 2, image.height / 2, 0.0), source
 
 

@@ -29,17 +29,31 @@ def map_scene(
     """
     import pycolmap
 
-    pycolmap.set_random_seed(protocol.seed)
+    if protocol.mapper == "global":
+        mapper = require("global_mapping", "--mapper global")
+        options = _global_options(protocol)
+    else:
+        mapper, options = pycolmap.incremental_mapping, _incremental_options(protocol)
+    return _mapped(mapper, (database, images, folder), options, protocol.seed)
+
+
+def map_by_default(database: Path, images: Path, folder: Path, seed: int) -> list[Any]:
+    """The same with COLMAP's own settings: its camera is refined, and it adjusts more often."""
+    import pycolmap
+
+    options = _repeatable_options(seed)
+    return _mapped(pycolmap.incremental_mapping, (database, images, folder), options, seed)
+
+
+def _mapped(mapper: Any, paths: tuple[Path, Path, Path], options: Any, seed: int) -> list[Any]:
+    import pycolmap
+
+    database, images, folder = paths
+    pycolmap.set_random_seed(seed)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     try:
-        if protocol.mapper == "global":
-            mapper = require("global_mapping", '`mapper="global"`')
-            models = mapper(database, images, folder, _global_options(protocol))
-        else:
-            models = pycolmap.incremental_mapping(
-                database, images, folder, _incremental_options(protocol)
-            )
+        models = mapper(database, images, folder, options)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return sorted(
@@ -47,16 +61,25 @@ def map_scene(
     )
 
 
-def _incremental_options(protocol: ReconstructionProtocol) -> Any:
+def _repeatable_options(seed: int) -> Any:
+    """COLMAP's settings of the incremental mapper, with one thread and a seed."""
     import pycolmap
 
-    refine, settings = protocol.intrinsics == "refine", protocol.mapping
     options = pycolmap.IncrementalPipelineOptions()
     options.num_threads = 1
+    options.extract_colors = False
+    for part in (options, options.mapper, options.triangulation):
+        if hasattr(part, "random_seed"):
+            part.random_seed = seed
+    return options
+
+
+def _incremental_options(protocol: ReconstructionProtocol) -> Any:
+    refine, settings = protocol.refined, protocol.mapping
+    options = _repeatable_options(protocol.seed)
     options.multiple_models = True
     options.min_model_size = settings.smallest_model
     options.max_num_models = settings.most_models
-    options.extract_colors = False
     options.ba_refine_focal_length = refine
     options.ba_refine_extra_params = refine
     options.ba_refine_principal_point = False
@@ -69,16 +92,13 @@ def _incremental_options(protocol: ReconstructionProtocol) -> Any:
             setattr(options, name, ratio)
     options.ba_global_max_refinements = settings.global_refinements
     options.ba_local_max_refinements = settings.local_refinements
-    for part in (options, options.mapper, options.triangulation):
-        if hasattr(part, "random_seed"):
-            part.random_seed = protocol.seed
     return options
 
 
 def _global_options(protocol: ReconstructionProtocol) -> Any:
     import pycolmap
 
-    refine = protocol.intrinsics == "refine"
+    refine = protocol.refined
     options = pycolmap.GlobalPipelineOptions()
     options.num_threads = 1
     options.random_seed = protocol.seed

@@ -25,7 +25,7 @@ class ReconstructionOptions:
     protocol : ReconstructionProtocol
     wanted : Wanted
     reference : str or None
-        Combination whose cloud is the reference of distances; by default the largest model.
+        Combination whose cloud is the reference of distances; by default the best model.
     features : path, optional
         Folder for features, which are reused if `run` or another reconstruction stored them there.
         By default features are removed after the reconstruction.
@@ -35,6 +35,8 @@ class ReconstructionOptions:
         Limit of the CPU time of a stage.
     memory_limit : float or None
         Gigabytes of each process; by default its share of 80 %.
+    baseline : bool
+        Whether COLMAP's default is a row of the table, too.
     retry_failed : bool
         Retry reconstructions that crashed, raised an error, or exceeded a limit.
 
@@ -52,6 +54,7 @@ class ReconstructionOptions:
     workers: int | None = None
     timeout: float | str = STAGE_TIMEOUT
     memory_limit: float | None = None
+    baseline: bool = True
     retry_failed: bool = False
 
     def __post_init__(self) -> None:

@@ -10,7 +10,7 @@ from aerocues.arguments import check_choice, check_positive, check_whole
 from aerocues.defaults import FLIGHT_KEYPOINTS
 from aerocues.pipeline.protocol import ChanceTest, Verification
 
-Intrinsics = Literal["fixed", "refine"]
+Intrinsics = Literal["calibrated", "fixed", "refine"]
 Mapper = Literal["incremental", "global"]
 
 # Raise this whenever the same images and methods would give other models.
@@ -28,13 +28,21 @@ class Requirements:
         of its images that are correctly placed.
     position_error_share : float
         Largest position error of a correctly placed camera, as a share of the extent of the flight.
-    gps_error : float
-        With GPS positions, which have errors themselves, this error in metres is always allowed.
+    gps_error, gps_height_error : float
+        With GPS positions, which have errors themselves, this horizontal and this vertical error in
+        metres are always allowed.
+    agreement : float
+        Models agree if their cameras are this close, as a share of the extent.
+    voters : int
+        Minimum number of models, with at least two detectors, that can outvote GPS.
     """
 
     registered_share: float = 0.8
     position_error_share: float = 0.03
     gps_error: float = 5.0
+    gps_height_error: float = 10.0
+    agreement: float = 0.01
+    voters: int = 3
 
 
 @dataclass(frozen=True)
@@ -63,9 +71,11 @@ class ReconstructionProtocol:
         Seed of every stage.
     max_keypoints : int
         Maximum number of keypoints per image; 0: all.
-    intrinsics : {"fixed", "refine"}
-        Whether focal length and distortion are fixed at known values, or adjusted with the model.
-        Flat scenes seen from straight above do not determine them.
+    intrinsics : {"calibrated", "fixed", "refine"}
+        ``calibrated``: focal length and distortion of all models are estimated once, by COLMAP's
+        default, if the images determine them. ``fixed``: they stay at known values. ``refine``:
+        they are adjusted with each model. Flat scenes seen from straight above do not determine
+        them.
     focal_length : float or None
         Pixels, in place of the value from EXIF; above 0.
     mapper : {"incremental", "global"}
@@ -85,7 +95,7 @@ class ReconstructionProtocol:
 
     seed: int = 0
     max_keypoints: int = FLIGHT_KEYPOINTS
-    intrinsics: Intrinsics = "fixed"
+    intrinsics: Intrinsics = "calibrated"
     focal_length: float | None = None
     mapper: Mapper = "incremental"
     verification: Verification = field(default_factory=Verification)
@@ -113,8 +123,15 @@ class ReconstructionProtocol:
     def identity(self) -> dict[str, object]:
         """Settings that the models of all combinations and their evaluation depend on.
 
-        Thresholds are not included, as they concern only some combinations.
+        Thresholds are not included, as they concern only some combinations; nor is the source of
+        the intrinsics, as the cameras show them.
         """
         settings = asdict(self)
-        del settings["thresholds"]
-        return {"version": RECONSTRUCTION_VERSION, **settings}
+        for name in ("thresholds", "intrinsics"):
+            del settings[name]
+        return {"version": RECONSTRUCTION_VERSION, "refined": self.refined, **settings}
+
+    @property
+    def refined(self) -> bool:
+        """Whether the mapper adjusts the intrinsics of each model."""
+        return self.intrinsics == "refine"

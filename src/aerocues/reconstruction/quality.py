@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from aerocues.datasets.dataset import Dataset
 from aerocues.reconstruction.alignment import Similarity
 from aerocues.reconstruction.colmap import camera_from_world, registered
-from aerocues.reconstruction.truth import TruePositions
+from aerocues.reconstruction.truth import Located, TruePositions
 from aerocues.results.clouds import Cloud
 from aerocues.results.metrics import Row
 
@@ -26,6 +25,7 @@ def model_figures(model: Any) -> Row:
     return {
         "registered_images": len(registered(model)),
         "points_3d": len(points),
+        "points_in_3_images": int((lengths >= 3).sum()),
         "observations": int(lengths.sum()),
         "mean_track_length": float(lengths.mean()) if points else None,
         "reprojection_error": float(errors.mean()) if points else None,
@@ -34,17 +34,15 @@ def model_figures(model: Any) -> Row:
     }
 
 
-def cloud_of(
-    model: Any, dataset: Dataset, truth: TruePositions | None, frame: Similarity | None
-) -> Cloud:
+def cloud_of(model: Any, truth: TruePositions | None, located: Located | None) -> Cloud:
     """Points and cameras of a model, in metres if a true frame is known."""
     numbers = sorted(model.points3D)
     points = [model.points3D[number] for number in numbers]
     images = registered(model)
-    place = frame or Similarity(1.0, np.eye(3), np.zeros(3))
+    place = located.frame if located else Similarity(1.0, np.eye(3), np.zeros(3))
     centres = np.array([image.projection_center() for image in images]).reshape(-1, 3)
     unknown = np.full(3, np.nan)
-    positions = truth.by_name if truth and frame else {}
+    positions = truth.by_name if truth and located else {}
     camera = model.cameras[images[0].camera_id]
     return Cloud(
         points=_floats(place.apply(np.array([point.xyz for point in points]).reshape(-1, 3))),
@@ -57,7 +55,7 @@ def cloud_of(
         names=np.array([str(image.name) for image in images]),
         positions=_floats([positions.get(str(image.name), unknown) for image in images]),
         view=_floats([camera.mean_focal_length(), camera.width, camera.height]),
-        unit="m" if frame else "unit",
+        unit="m" if located else "unit",
     )
 
 

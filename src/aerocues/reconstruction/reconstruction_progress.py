@@ -57,6 +57,14 @@ class ReconstructionProgress:
             message=f"no distances between clouds: {reference} has no model ({reason})"
         )
 
+    def without_baseline(self, reason: str) -> None:
+        """COLMAP's default cannot be made with this version of it."""
+        self._making.tell(message=f"no row of COLMAP's default: {reason}")
+
+    def calibrated(self, message: str) -> None:
+        """Whether the intrinsics of all models are calibrated, or why not."""
+        self._making.tell(message=message)
+
 
 def summary(row: Row) -> str:
     """``ok: 18 of 18 images, 1,288 points, 0.34 px, 0.8 m``; only the status for a failure.

@@ -10,6 +10,7 @@ from aerocues.methods.combination import Combination
 from aerocues.reconstruction.cloud_distance import CloudDistances, cloud_distances
 from aerocues.results.clouds import Cloud
 from aerocues.results.metrics import Row
+from aerocues.results.model_quality import model_order
 
 
 def with_distances(
@@ -24,7 +25,7 @@ def with_distances(
     rows : mapping of Combination to Row
     cloud_of : callable
     reference : Combination, optional
-        By default the successful model with the most images, then the most points.
+        By default the best successful model; see `model_quality`.
 
     Returns
     -------
@@ -74,8 +75,4 @@ def _reference(
     if wanted is not None:
         return wanted if wanted in clouds else None
     good = [each for each in clouds if rows[each]["status"] == "ok"]
-    return min(
-        good,
-        key=lambda each: (-rows[each]["registered_images"], -rows[each]["points_3d"], str(each)),
-        default=None,
-    )
+    return min(good, key=lambda each: (model_order(rows[each]), str(each)), default=None)

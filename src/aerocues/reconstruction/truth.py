@@ -1,8 +1,9 @@
-"""The ground truth of a scene, and the alignment of models with it."""
+"""What is known to be true of a scene, and how a model is brought into its frame."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,110 +23,186 @@ from aerocues.reconstruction.protocol import Requirements
 from aerocues.results.metrics import Row
 
 Array = NDArray[np.float64]
+POSES, GPS, GPS_IN_PLAN = "poses", "gps", "gps in plan"
 
 
 @dataclass(frozen=True, eq=False)
 class TruePositions:
-    """True camera positions.
+    """Where cameras were.
 
     Parameters
     ----------
     source : str
-        ``poses`` or ``gps``.
-    by_name : dict of str to (3,) float64
-        Centres in metres.
+        ``poses``, ``gps``, or ``gps in plan`` where heights are left out.
+    by_name : mapping of str to (3,) float64
+        Centres in metres: east, north, up.
     """
 
     source: str
-    by_name: dict[str, Array]
+    by_name: Mapping[str, Array]
 
     @property
     def extent(self) -> float:
-        """Diagonal of their bounding box in metres."""
+        """Diagonal of the box around all of them, in metres."""
         return extent(np.array(list(self.by_name.values())))
 
-    def tolerance(self, requirements: Requirements) -> float:
-        """Largest position error, in metres, of a correctly placed camera."""
+    def tolerance(self, requirements: Requirements) -> Array:
+        """Metres east, north and up within which a camera counts as in its place."""
         share = requirements.position_error_share * self.extent
-        return max(share, requirements.gps_error) if self.source == "gps" else share
+        if self.source == POSES:
+            return np.full(3, share)
+        plan = max(share, requirements.gps_error)
+        height = max(share, requirements.gps_height_error)
+        return np.array([plan, plan, np.inf if self.source == GPS_IN_PLAN else height])
+
+    def in_plan(self) -> TruePositions:
+        """The same without heights, as if all of them were the same."""
+        level = float(np.median([each[2] for each in self.by_name.values()]))
+        flat = {name: np.array([each[0], each[1], level]) for name, each in self.by_name.items()}
+        return TruePositions(GPS_IN_PLAN, flat)
+
+
+@dataclass(frozen=True, eq=False)
+class Located:
+    """A model's cameras in the frame of true positions.
+
+    Parameters
+    ----------
+    truth : TruePositions
+    frame : Similarity
+        From the model's frame to metres.
+    differences : mapping of str to (3,) float64
+        Metres from where each registered camera was to where the model has it.
+    tolerance : (3,) float64
+        Half axes of the ellipsoid within which a camera is in its place.
+    """
+
+    truth: TruePositions
+    frame: Similarity
+    differences: Mapping[str, Array]
+    tolerance: Array
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Metres from its true position for each camera; in plan where heights are left out."""
+        kept = np.isfinite(self.tolerance)
+        return {name: float(np.linalg.norm(each[kept])) for name, each in self.differences.items()}
+
+    @property
+    def far(self) -> list[str]:
+        """Cameras that are not in their place, the farthest first."""
+        errors = self.errors
+        names = [
+            name
+            for name, each in self.differences.items()
+            if np.linalg.norm(each / self.tolerance) > 1
+        ]
+        return sorted(names, key=lambda name: (-errors[name], name))
 
 
 def true_positions(dataset: Dataset) -> TruePositions | None:
-    """Known poses, else GPS; None if fewer than three images have a position."""
+    """Known poses, else GPS; None where fewer than three images have a position."""
     poses = {image.name: image.truth.centre for image in dataset.images if image.truth}
     if len(poses) >= 3:
-        return TruePositions("poses", poses)
+        return TruePositions(POSES, poses)
     located = [image for image in dataset.images if image.gps is not None]
     if len(located) < 3:
         return None
-    # If some images have no altitude, it would be taken from the first image.
+    # An altitude that some images lack would count as that of the first.
     positions = east_north_up([image.gps for image in located if image.gps])
     return TruePositions(
-        "gps", {image.name: each for image, each in zip(located, positions, strict=True)}
+        GPS, {image.name: each for image, each in zip(located, positions, strict=True)}
     )
 
 
 def centres_of(model: Any) -> dict[str, Array]:
-    """Centres of the registered cameras in the frame of the model, by image name."""
+    """Centres of the registered cameras in the model's frame, by name of the image."""
     return {
         str(image.name): np.asarray(image.projection_center(), np.float64)
         for image in registered(model)
     }
 
 
-def to_true_frame(
-    model: Any, truth: TruePositions | None, requirements: Requirements
-) -> Similarity | None:
-    """Similarity from the frame of the model to metres; None if unknown or not determined.
+def locate(
+    centres: Mapping[str, Array], truth: TruePositions | None, requirements: Requirements
+) -> Located | None:
+    """Bring a model's cameras to where they were.
 
-    It places most cameras correctly, so a single outlier has no influence.
+    The frame in which most cameras are in their place: one that is far off bends nothing. Heights
+    of GPS are left out where cameras are in their place in plan and would not be with them.
+
+    Parameters
+    ----------
+    centres : mapping of str to (3,) float64
+        Of the registered cameras, in the model's frame.
+    truth : TruePositions, optional
+    requirements : Requirements
+
+    Returns
+    -------
+    Located or None
+        None where nothing is known or the frame is not determined.
     """
     if truth is None:
         return None
-    centres = centres_of(model)
+    found = _locate(centres, truth, requirements)
+    if found is None or truth.source != GPS:
+        return found
+    most = (1 - requirements.registered_share) * len(found.differences)
+    if len(found.far) <= most:
+        return found
+    in_plan = _locate(centres, truth.in_plan(), requirements)
+    if in_plan is None or len(in_plan.far) > most:
+        return found
+    return _with_heights(in_plan, centres, truth)
+
+
+def _with_heights(located: Located, centres: Mapping[str, Array], truth: TruePositions) -> Located:
+    """Differences in height, too, as if their median were right."""
+    names = list(located.differences)
+    there = located.frame.apply(np.array([centres[name] for name in names]))
+    differences = there - np.array([truth.by_name[name] for name in names])
+    differences[:, 2] -= np.median(differences[:, 2])
+    return replace(located, differences=dict(zip(names, differences, strict=True)))
+
+
+def _locate(
+    centres: Mapping[str, Array], truth: TruePositions, requirements: Requirements
+) -> Located | None:
     shared = [name for name in centres if name in truth.by_name]
-    return robust_similarity(
-        np.array([centres[name] for name in shared]).reshape(-1, 3),
-        np.array([truth.by_name[name] for name in shared]).reshape(-1, 3),
-        truth.tolerance(requirements),
-    )
+    tolerance = truth.tolerance(requirements)
+    estimated = np.array([centres[name] for name in shared]).reshape(-1, 3)
+    true = np.array([truth.by_name[name] for name in shared]).reshape(-1, 3)
+    frame = robust_similarity(estimated, true, tolerance)
+    if frame is None:
+        return None
+    differences = dict(zip(shared, frame.apply(estimated) - true, strict=True))
+    return Located(truth, frame, differences, tolerance)
 
 
-def position_errors(model: Any, truth: TruePositions, frame: Similarity) -> dict[str, float]:
-    """Position error of each registered camera in metres, by image name."""
-    return {
-        name: float(np.linalg.norm(frame.apply(centre) - truth.by_name[name]))
-        for name, centre in centres_of(model).items()
-        if name in truth.by_name
-    }
+def compare_with_truth(model: Any, dataset: Dataset, located: Located | None) -> Row:
+    """Errors of positions, rotations and surface, as far as the truth is known.
 
-
-def compare_with_truth(
-    model: Any,
-    dataset: Dataset,
-    truth: TruePositions | None,
-    frame: Similarity | None,
-    requirements: Requirements,
-) -> Row:
-    """Errors of positions, rotations and surface, where the truth is known.
-
-    The extent includes the true positions of images that are not in the model.
+    The extent is that of all true positions, also of images that the model lacks.
     """
-    if truth is None or frame is None:
+    if located is None:
         return {}
-    errors = np.array(list(position_errors(model, truth, frame).values()))
+    errors = np.array(list(located.errors.values()))
+    differences = np.array(list(located.differences.values())).reshape(-1, 3)
     rmse = root_mean_square(errors)
     found: Row = {
-        "truth": truth.source,
+        "truth": located.truth.source,
         "position_rmse": rmse,
         "position_median": float(np.median(errors)),
-        "position_error_share": rmse / truth.extent,
-        "placed_images": int((errors <= truth.tolerance(requirements)).sum()),
+        "position_error_share": rmse / located.truth.extent,
+        "plan_rmse": root_mean_square(np.linalg.norm(differences[:, :2], axis=1)),
+        "height_rmse": root_mean_square(differences[:, 2]),
+        "placed_images": len(errors) - len(located.far),
     }
-    if truth.source == "poses":
+    if located.truth.source == POSES:
         views = {image.name: image.truth for image in dataset.images if image.truth}
-        found["rotation_error"] = _rotation_error(model, views, frame)
-        found["surface_error"] = _surface_error(model, views, frame)
+        found["rotation_error"] = _rotation_error(model, views, located.frame)
+        found["surface_error"] = _surface_error(model, views, located.frame)
     return found
 
 
@@ -137,9 +214,9 @@ def _rotation_error(model: Any, views: dict[str, TrueView], frame: Similarity) -
 
 
 def _surface_error(model: Any, views: dict[str, TrueView], frame: Similarity) -> float | None:
-    """Median over points of the median depth error over their images.
+    """Median over points of the median over their images of the error in depth.
 
-    The depth of the point in the true camera is compared with the depth of the surface.
+    The point is seen through the true camera: its depth there against that of the surface.
     """
     errors: dict[int, list[float]] = {}
     for image in registered(model):

@@ -16,9 +16,11 @@ from aerocues.processes.heartbeat import Heartbeat
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     """Process one task after the other until the parent closes the pipe."""
     from aerocues.errors import AerocuesError
+    from aerocues.reconstruction.baseline import BaselineModel
     from aerocues.reconstruction.colmap import quiet
+    from aerocues.reconstruction.combination_model import CombinationModel
     from aerocues.reconstruction.images import prepare_image
-    from aerocues.reconstruction.one_model import ModelMaker
+    from aerocues.results.reconstruction_schema import BASELINE
 
     scene = pipe.recv()
     quiet()
@@ -30,7 +32,8 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
             return
         try:
             if isinstance(work, Combination):
-                found: object = ModelMaker(scene, work, heartbeat.announce).make()
+                maker = BaselineModel if work == BASELINE else CombinationModel
+                found: object = maker(scene, work, heartbeat.announce).make()
             else:
                 found = prepare_image(scene.dataset.image(work), scene.images)
         except (AerocuesError, OSError) as error:

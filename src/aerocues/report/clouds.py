@@ -15,6 +15,8 @@ from aerocues.report.cloud_frames import in_one_frame
 from aerocues.report.entry import ReportEntry
 from aerocues.results.clouds import Cloud
 from aerocues.results.combination_columns import name_in_row
+from aerocues.results.model_quality import model_order
+from aerocues.results.reconstruction_schema import BASELINE
 
 MOST_CLOUDS = 10
 MOST_POINTS = 6000
@@ -91,7 +93,8 @@ def _reasons(rows: Sequence[Row]) -> list[tuple[str, Sequence[Row]]]:
     return [
         ("reference of the distances", [row for row in rows if row["reference"] == row["name"]]),
         ("best by CUES", sorted(good, key=lambda row: row["rank"])),
-        ("most images, then most points", sorted(good, key=_by_size)),
+        ("best model", sorted(good, key=model_order)),
+        ("COLMAP's default", [row for row in rows if row["name"] == str(BASELINE)]),
         ("largest position errors", sorted(misplaced, key=_by_error, reverse=True)),
         ("most points", sorted(good, key=lambda row: -(row["points_3d"] or 0))),
         ("smallest position errors", sorted(placed, key=_by_error)),

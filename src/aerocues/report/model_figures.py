@@ -9,6 +9,7 @@ import numpy as np
 from aerocues.report.entry import ReportEntry
 from aerocues.report.score_figures import COLOURS, LINE, TOP, WIDTH
 from aerocues.results.combination_columns import combination_name, name_in_row
+from aerocues.results.model_quality import model_order
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,17 +20,9 @@ MARKERS = {OK: ("o", COLOURS[0], "success"), "": ("x", COLOURS[5], "failed")}
 
 
 def ordered_models(found: ReportEntry) -> list[dict[str, Any]]:
-    """Reconstructions sorted by success, registered images and points, with combination names."""
+    """Reconstructions sorted from best to worst, with combination names."""
     rows = [{**row, "name": name_in_row(row)} for row in found.models.to_dicts()]
-    return sorted(
-        rows,
-        key=lambda row: (
-            row["status"] != OK,
-            -(row["registered_images"] or 0),
-            -(row["points_3d"] or 0),
-            row["name"],
-        ),
-    )
+    return sorted(rows, key=lambda row: (model_order(row), row["name"]))
 
 
 def draw_models(found: ReportEntry) -> Figure | None:

@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import ScoreError
 from aerocues.results.combination_columns import COMBINATION, METHODS, combination_name
-from aerocues.results.reconstruction_schema import RECONSTRUCTION_STATUSES, RECONSTRUCTIONS
+from aerocues.results.model_quality import best_first
+from aerocues.results.reconstruction_schema import (
+    BASELINE,
+    RECONSTRUCTION_STATUSES,
+    RECONSTRUCTIONS,
+)
 from aerocues.scoring.criteria import CRITERIA, Better
 from aerocues.scoring.outcomes import FEWEST_MODELS, OUTCOMES, Relations, relations_of
 
@@ -47,10 +52,13 @@ def model_facts(
     chance_fails : bool
         Whether a pair that does not beat chance counts as failed.
     """
+    import polars as pl
+
     if models.is_empty():
         return None
     name = combination_name()
-    named = models.with_columns(name).sort(COMBINATION)
+    named = best_first(models).with_columns(name)
+    alike = named.filter(pl.col(COMBINATION) != str(BASELINE))
     numbers = [
         column
         for column in RECONSTRUCTIONS
@@ -59,6 +67,7 @@ def model_facts(
         and named[column.name].is_not_null().any()
     ]
     statuses = RECONSTRUCTION_STATUSES
+    made = {each: _single(alike[each]) for each in MADE}
     return {
         "combinations": named[COMBINATION].to_list(),
         **{method: named[method].to_list() for method in METHODS},
@@ -68,7 +77,8 @@ def model_facts(
         "values": {column.name: named[column.name].to_list() for column in numbers},
         "reference": _single(named[REFERENCE]),
         "statuses": {status.name: status.meaning for status in statuses},
-        "made": {each: made for each in MADE if (made := _single(named[each])) is not None},
+        "made": {each: value for each, value in made.items() if value is not None},
+        "baseline": str(BASELINE) if len(alike) < len(named) else None,
         "relations": _relations(rows, models, chance_fails=chance_fails),
     }
 

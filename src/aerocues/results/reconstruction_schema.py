@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from aerocues.methods.combination import Combination
 from aerocues.results.combination_columns import METHODS
 from aerocues.results.schema import IDENTITY, Column
 from aerocues.results.statuses import Status
 
+# COLMAP by its own defaults, a row beside the combinations, to compare them with: its SIFT, its
+# matcher and a camera that it refines.
+BASELINE = Combination("COLMAP", "SIFT", "L2", "COLMAP")
 RECONSTRUCTION_IDENTITY = ("dataset", *METHODS)
 
 RECONSTRUCTION_STATUSES: tuple[Status, ...] = (
@@ -51,12 +55,19 @@ _MODEL = (
         "components", "models that the mapper made; more than 1 means that the scene fell apart"
     ),
     _count("points_3d", "3D points of the model; points seen by only two images are not created"),
+    _count("points_in_3_images", "3D points that are observed in 3 images or more"),
     _count("observations", "keypoints that observe a 3D point"),
     _number("mean_track_length", "images", "observations / points_3d"),
     _number(
         "reprojection_error",
         "px",
         "mean over 3D points of the mean distance between keypoint and projection (as in COLMAP)",
+    ),
+    _number(
+        "model_quality",
+        "",
+        "placed_images / images x sqrt(points_in_3_images / error): surface_error or position_rmse "
+        "where poses are known, else reprojection_error",
     ),
     _number("observation_error", "px", "mean of that distance over all observations"),
     _number("focal_length", "px", "focal length of the model's first camera"),
@@ -83,8 +94,14 @@ _TRUTH = (
     ),
     _number("position_median", "m", "median of that distance"),
     _number("position_error_share", "ratio", "position_rmse / extent of the true positions"),
+    _number("plan_rmse", "m", "root mean square horizontal distance of camera centres"),
+    _number("height_rmse", "m", "root mean square vertical distance of camera centres"),
     _count("placed_images", "registered images whose cameras are close to their true positions"),
-    _text("truth", "source of the true positions: gps or poses"),
+    _text(
+        "truth",
+        "source of the true positions: poses, gps, gps in plan (its heights are wrong), or models "
+        "(that agree with each other and not with GPS)",
+    ),
     _number("rotation_error", "degree", "median rotation from the true orientation (poses)"),
     _number("surface_error", "m", "median distance of 3D points from the true surface (depth)"),
 )

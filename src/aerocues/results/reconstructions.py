@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aerocues.results.model_quality import MODEL_QUALITY, model_quality
 from aerocues.results.reconstruction_schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS
 from aerocues.results.schema import polars_schema
 from aerocues.results.table_files import (
@@ -30,7 +31,10 @@ def reconstruction_table(figures: pl.DataFrame) -> pl.DataFrame:
     schema = polars_schema(RECONSTRUCTIONS)
     missing = [pl.lit(None).alias(name) for name in schema if name not in figures.columns]
     table = figures.with_columns(missing).select(list(schema)).cast(pl.Schema(schema))
-    return table.sort(RECONSTRUCTION_IDENTITY)
+    quality = [model_quality(row) for row in table.iter_rows(named=True)]
+    return table.with_columns(pl.Series(MODEL_QUALITY, quality, pl.Float64)).sort(
+        RECONSTRUCTION_IDENTITY
+    )
 
 
 def read_reconstructions(file: Path) -> tuple[TableFile, pl.DataFrame]:

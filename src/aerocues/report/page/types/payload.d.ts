@@ -202,6 +202,8 @@ interface Models extends Methods {
   /** Meanings by status. */
   statuses: Record<string, string>;
   made: Record<string, string | number>;
+  /** COLMAP's default, where it is one of them. */
+  baseline: string | null;
   relations: OrReason<Relations>;
 }
 

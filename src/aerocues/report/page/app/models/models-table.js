@@ -16,30 +16,25 @@ export function modelsOf(entry) {
 export const MODELS = {
   id: "reconstructions", title: "All reconstructions", prefix: "models.", natural: "place",
   columns: modelColumns, rows: shownModels,
-  read: () => "Sorted by success, then registered images, then 3D points. Do not judge by the reprojection error alone: broken models "
-    + "have the lowest. A dot marks a success; values of failed reconstructions describe the incomplete model.",
+  read: entry => "Sorted by success, then model quality. Do not judge by the reprojection error alone: broken models have the lowest. "
+    + "A dot marks a success; values of failed reconstructions describe the incomplete model." + aboutBaseline(modelsOf(entry)),
   downFirst: (entry, {key}) => modelColumn(entry, key)?.better === "higher",
   isMarked: (entry, m) => modelsOf(entry).status[m] === "ok",
 };
 
-/** Positions `m` of the reconstructions that match the filter, the best first.
+/** @param {Models} models */
+function aboutBaseline({baseline, combinations, status}) {
+  if (!baseline) return "";
+  return combinations[0] === baseline && status[0] === "ok" ? ` No combination beats COLMAP's default (${baseline}): take that.`
+    : ` ${baseline} is COLMAP's default: its own SIFT and matcher, and a camera that it refines.`;
+}
+
+/** Positions `m` of the reconstructions that match the filter, the best first: their order in the data.
  * @param {Entry} entry */
 export function shownModels(entry) {
   const models = modelsOf(entry);
   const passes = currentFilter();
-  return placed(entry).filter(m => passes(CODES.map(code => models[code][m])));
-}
-
-/** @param {Entry} entry */
-function placed(entry) {
-  return remember(entry, "placed models", () => {
-    const models = modelsOf(entry);
-    const figure = (/** @type {string} */ name, /** @type {number} */ m) => models.values[name]?.[m] ?? -1;
-    const failed = (/** @type {number} */ m) => Number(models.status[m] !== "ok");
-    return models.combinations.map((_, m) => m).sort((a, b) => failed(a) - failed(b)
-      || figure("registered_images", b) - figure("registered_images", a)
-      || figure("points_3d", b) - figure("points_3d", a) || a - b);
-  });
+  return models.combinations.map((_, m) => m).filter(m => passes(CODES.map(code => models[code][m])));
 }
 
 /** @param {Entry} entry @param {string} key */
@@ -60,14 +55,13 @@ function modelLabel({name, unit}) {
   return unit === "model units" ? `${labelOf(name)}, model units` : labelOf(name);
 }
 
-const USUAL_OF_MODELS = ["registered_images", "points_3d", "mean_track_length", "reprojection_error", "position_rmse",
+const USUAL_OF_MODELS = ["registered_images", "points_3d", "points_in_3_images", "model_quality", "mean_track_length", "reprojection_error", "position_rmse",
   "cloud_distance_rms", "reconstruction_seconds"];
 
 /** @param {Entry} entry @returns {Column[]} */
 export function modelColumns(entry) {
   return remember(entry, "model columns", () => {
     const models = modelsOf(entry);
-    const place = new Map(placed(entry).map((m, i) => [m, i + 1]));
     const ranks = new Map(entry.combinations.map((name, a) => [name, entry.score.rank[a]]));
     const rank = (/** @type {number} */ m) => ranks.get(models.combinations[m]) ?? null;
     /** @type {Column} */
@@ -75,8 +69,8 @@ export function modelColumns(entry) {
       value: m => models.message[m], text: m => models.message[m] ?? ""};
     /** @type {Column[]} */
     const columns = [
-      {key: "place", label: "Rank", number: true, usual: true, title: "By success, registered images and 3D points",
-        value: m => place.get(m) ?? null, text: m => shown(place.get(m) ?? null)},
+      {key: "place", label: "Rank", number: true, usual: true, title: "By success, then model quality",
+        value: m => m + 1, text: m => shown(m + 1)},
       {key: "combination", label: "Combination", usual: true, title: "Detector-descriptor-norm-matcher",
         value: m => models.combinations[m], text: m => models.combinations[m]},
       {key: "rank", label: "Rank by CUES", number: true, usual: models.combinations.some((_, m) => rank(m) !== null),

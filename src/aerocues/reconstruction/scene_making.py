@@ -1,0 +1,107 @@
+"""Turns a dataset and options into a scene: methods, settings, combinations and cameras."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.errors import ReconstructionError
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import as_preset
+from aerocues.methods.selection import Patterns, select, split_names
+from aerocues.methods.strongest import limited
+from aerocues.pipeline.feature_folder import checked_folder
+from aerocues.reconstruction.colmap import colmap_version
+from aerocues.reconstruction.engine import ReconstructionLimits, prepare_images
+from aerocues.reconstruction.images import cameras_of, read_prepared, write_prepared
+from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
+from aerocues.reconstruction.scene import FEATURES, Scene
+from aerocues.results.versions import machine_name, software_versions
+
+
+def check_scene(dataset: Dataset) -> None:
+    """Refuse a dataset that cannot be reconstructed: ReconstructionError."""
+    if dataset.geometry != "epipolar":
+        raise ReconstructionError(
+            f"the images of {dataset.name} are related by homographies and have no depth; "
+            "reconstruct a folder or a flight"
+        )
+    sequences = list(dict.fromkeys(pair.sequence for pair in dataset.pairs))
+    if len(sequences) > 1:
+        raise ReconstructionError(
+            f"{dataset.name} has {len(sequences)} scenes ({', '.join(sequences[:5])}, ...); "
+            "choose one with `sequences`"
+        )
+
+
+def scene_of(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Scene:
+    """The scene under the given options; its cameras are not known yet."""
+    preset = as_preset(options.preset)
+    chance = options.protocol.chance if preset.chance_test else None
+    unordered = {frozenset((pair.image_1, pair.image_2)): pair for pair in reversed(dataset.pairs)}
+    once = [
+        pair for pair in dataset.pairs if unordered[frozenset((pair.image_1, pair.image_2))] is pair
+    ]
+    dataset = replace(dataset, pairs=once)
+    return Scene(
+        dataset=dataset,
+        methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
+        preset=preset.name,
+        protocol=replace(options.protocol, chance=chance, thresholds=preset.thresholds),
+        folder=output.absolute(),
+        features=_features_folder(output, options),
+        machine=machine_name(),
+        image_keys={image.name: image.source.content_key() for image in dataset.images},
+        wanted=options.wanted,
+        versions=(software_versions()["opencv"], colmap_version()),
+    )
+
+
+def _features_folder(output: Path, options: ReconstructionOptions) -> Path:
+    """The folder of features: a temporary one, unless a folder is given."""
+    if options.features is None:
+        return output.absolute() / FEATURES
+    return checked_folder(Path(options.features).absolute())
+
+
+def chosen_combinations(
+    scene: Scene,
+    combinations: Patterns,
+    tell: ReconstructionProgress,
+) -> list[Combination]:
+    """The combinations in the order asked for, where each was named; else in that of the tables."""
+    patterns = split_names(combinations)
+    chosen = select(scene.methods, patterns)
+    if not isinstance(combinations, str):
+        place = {name: number for number, name in enumerate(patterns)}
+        chosen.sort(key=lambda each: place.get(str(each), len(place)))
+    gray = any(image.source.is_gray() for image in scene.dataset.images)
+    needs_colour = [
+        each for each in chosen if scene.methods.descriptors[each.descriptor].needs_colour
+    ]
+    if gray and needs_colour:
+        chosen = [each for each in chosen if each not in needs_colour]
+        reason = (
+            f"{needs_colour[0].descriptor} needs three colour channels, but the images are gray"
+        )
+        if not chosen:
+            raise ReconstructionError(f"{reason}; choose other combinations")
+        tell.left_out(needs_colour, reason)
+    return chosen
+
+
+def with_cameras(scene: Scene, limits: ReconstructionLimits, tell: ReconstructionProgress) -> Scene:
+    """The scene with its cameras; images that are not in the folder yet are written there."""
+    known = read_prepared(scene.folder, scene.image_keys)
+    write_prepared(
+        scene.folder, scene.image_keys, known
+    )  # removed first, as its images are overwritten
+    left = [image.name for image in scene.dataset.images if image.name not in known]
+    for each in prepare_images(scene, left, limits, tell.read):
+        known[each.name] = each
+    write_prepared(scene.folder, scene.image_keys, known)
+    prepared = [known[image.name] for image in scene.dataset.images]
+    return replace(scene, cameras=cameras_of(scene.dataset, prepared, scene.protocol))
