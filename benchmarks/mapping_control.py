@@ -160,7 +160,9 @@ def compare(flight: str, folder: Path, features: int) -> None:
         if setting.pairs == "gps" and not located:
             continue
         scene = scene_with(flight, folder, features, setting)
-        print(f"{setting.name:28}{told(scene, *made(scene, setting, place / DATABASE))}", flush=True)
+        print(
+            f"{setting.name:28}{told(scene, *made(scene, setting, place / DATABASE))}", flush=True
+        )
 
 
 def main() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pycolmap
@@ -134,7 +135,7 @@ def test_large_scenes_get_the_pairs_of_the_others(landscape: Dataset) -> None:
     pairing, pairs = baseline.baseline_pairs(replace(landscape, pairs=landscape.pairs[:5]))
     assert (pairing, len(pairs)) == ("exhaustive", 36)
     images = [replace(landscape.images[0], name=f"{number}.png") for number in range(51)]
-    consecutive = [(str(a.name), str(b.name)) for a, b in zip(images, images[1:], strict=False)]
+    consecutive = [(one.name, other.name) for one, other in pairwise(images)]
     large = replace(scene_of(images, consecutive), settings=(("pairs", "consecutive"),))
     assert baseline.baseline_pairs(large) == ("consecutive", consecutive)
 

@@ -86,7 +86,8 @@ def by_hand(model: Any) -> float:
         turned = turned + np.cross(turns[which], turned) + moves[which]
         normal = turned[:, :2] / turned[:, 2:]
         radial = 1 + distortion * (normal**2).sum(axis=1, keepdims=True)
-        return (focal * normal * radial + [512.0, 384.0] - xy).ravel()
+        found: np.ndarray = (focal * normal * radial + [512.0, 384.0] - xy).ravel()
+        return found
 
     start = np.concatenate(
         [
