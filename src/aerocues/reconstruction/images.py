@@ -131,8 +131,8 @@ def require_focal_lengths(cameras: Sequence[CameraGroup], protocol: Reconstructi
         total = sum(len(group.names) for group in cameras)
         raise ReconstructionError(
             f"the focal length of {len(unknown)} of {total} images is not known "
-            f"({unknown[0]}, ...); give --focal-length PIXELS, or let the mapper estimate it with "
-            "--intrinsics refine"
+            f"({unknown[0]}, ...); give `focal_length` in pixels, or let the mapper estimate it "
+            'with `intrinsics="refine"`'
         )
 
 

@@ -30,7 +30,7 @@ def map_scene(
     import pycolmap
 
     if protocol.mapper == "global":
-        mapper = require("global_mapping", "--mapper global")
+        mapper = require("global_mapping", '`mapper="global"`')
         options = _global_options(protocol)
     else:
         mapper, options = pycolmap.incremental_mapping, _incremental_options(protocol)
