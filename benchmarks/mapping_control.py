@@ -24,6 +24,7 @@ import numpy as np
 from aerocues.methods.arrays import Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.baseline import BaselineModel
+from aerocues.reconstruction.calibration import told_calibration
 from aerocues.reconstruction.colmap import open_database, quiet
 from aerocues.reconstruction.database import write_database
 from aerocues.reconstruction.images import HALF_PIXEL
@@ -155,6 +156,7 @@ def compare(flight: str, folder: Path, features: int) -> None:
     print(f"{flight:28}" + "{:>9} {:>7} {:>7} {:>6} {:>6} {:>7} {:>7} {:>6} {:>6}".format(*heading))
     seconds = [row["verification_seconds"], row["mapping_seconds"]]
     print(f"{'COLMAP alone':28}{told(scene, [alone], seconds)}", flush=True)
+    print(told_calibration(scene.cameras, row["calibration"]), flush=True)
     located = all(image.gps is not None for image in scene.dataset.images)
     for setting in SETTINGS:
         if setting.pairs == "gps" and not located:
