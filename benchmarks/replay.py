@@ -44,6 +44,7 @@ class ReplayEvaluator:
     ) -> None:
         self.alternatives, self.components, self.criteria = alternatives, components, criteria
         self.blocks, self.predicted_seconds = blocks, predicted_seconds
+        self.classes = np.zeros(len(blocks), np.int64)
         self.spent = 0.0
         self._values = values
         detectors = components["detector"]

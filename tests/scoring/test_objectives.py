@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -26,16 +28,19 @@ def test_shares_are_divided_within_an_aspect_as_estimated() -> None:
     np.testing.assert_allclose(objective.weights(ESTIMATED[:2], CRITERIA[:2]), [0.25, 0.75])
 
 
-def test_balanced_leaves_weights_as_they_are() -> None:
-    np.testing.assert_array_equal(OBJECTIVES["balanced"].weights(ESTIMATED, CRITERIA), ESTIMATED)
+def test_efficiency_leaves_weights_as_they_are() -> None:
+    np.testing.assert_array_equal(OBJECTIVES["efficiency"].weights(ESTIMATED, CRITERIA), ESTIMATED)
 
 
 def test_sixteen_times_the_time_must_be_twice_as_good() -> None:
     speed = OBJECTIVES["speed"]
     np.testing.assert_allclose(speed.hurry(np.array([1.0, 16.0, 0.0625])), [0.5, 0.25, 1.0])
-    assert speed.criteria(("recall",)) == ("recall", "total_seconds")
-    assert speed.criteria(("total_seconds",)) == ("total_seconds",)
-    assert OBJECTIVES["balanced"].criteria(("recall",)) == ("recall",)
+    plain = replace(SCORE_PRESETS["inliers"], criteria=("recall",))
+    assert speed.criteria(plain) == ("recall", "total_seconds")
+    timed = replace(plain, criteria=("total_seconds",))
+    assert speed.criteria(timed) == ("total_seconds",)
+    assert OBJECTIVES["efficiency"].criteria(plain) == ("recall",)
+    assert OBJECTIVES["reconstruction"].criteria(SCORE_PRESETS["models"]) == ("coverage", "links")
 
 
 def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:
@@ -46,10 +51,12 @@ def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
-@pytest.mark.parametrize("preset", SCORE_PRESETS)
-def test_every_objective_weighs_what_the_presets_measure(name: str, preset: str) -> None:
+@pytest.mark.parametrize("references", [True, False])
+def test_every_objective_weighs_what_its_preset_measures(name: str, references: bool) -> None:
     objective = OBJECTIVES[name]
-    criteria = criteria_named(objective.criteria(SCORE_PRESETS[preset].criteria))
+    scoring = objective.scoring(references=references)
+    assert scoring.name == (objective.preset if references else "thesis")
+    criteria = criteria_named(objective.criteria(scoring))
     weights = objective.weights(np.full(len(criteria), 1 / len(criteria)), criteria)
     assert weights.sum() == pytest.approx(1)
     for aspect, share in objective.shares.items():

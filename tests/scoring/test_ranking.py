@@ -111,6 +111,7 @@ def test_settings_tell_everything() -> None:
         "weights": ("entropy", "variance", "critic", "pca"),
         "aggregation": "arithmetic",
         "failures": "worst",
+        "bounds": "measured",
         "criteria": ["c0", "c1", "c2", "c3"],
         "repeats": 6,
         "resamples": 7,

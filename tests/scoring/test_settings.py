@@ -24,6 +24,7 @@ from aerocues.scoring.settings import score_preset_named
         ({"weights": ("pca", "pca")}, "pca"),
         ({"aggregation": "median"}, "'median'.* arithmetic"),
         ({"failures": "ignore"}, "'ignore'.* worst, omit"),
+        ({"bounds": "none"}, "'none'.* measured, unit"),
     ],
 )
 def test_settings_that_do_not_exist(changes: dict[str, Any], message: str) -> None:
@@ -50,5 +51,5 @@ def test_preset_of_the_thesis_is_as_published() -> None:
 
 
 def test_an_unknown_preset() -> None:
-    with pytest.raises(ScoreError, match="default, thesis"):
+    with pytest.raises(ScoreError, match="default, models, inliers, thesis"):
         score_preset_named("best")

@@ -3,10 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.cues import score
 from aerocues.scoring.objectives import OBJECTIVES
-from aerocues.scoring.settings import ScoreSettings
+from aerocues.scoring.settings import SCORE_PRESETS, ScoreSettings
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.valuation import Valuation
 
@@ -33,9 +33,9 @@ def test_what_is_measured_whole_is_worth_its_cues() -> None:
     values = table()
     names = [f"a{number}" for number in range(9)]
     expected = score(DecisionTable.from_values(values, names, CRITERIA))
-    balanced = valuation(values, np.zeros(6, np.int64), "balanced")
-    np.testing.assert_allclose(balanced.weights, expected.weights)
-    np.testing.assert_allclose(balanced.of(values), expected.scores)
+    efficiency = valuation(values, np.zeros(6, np.int64), "efficiency")
+    np.testing.assert_allclose(efficiency.weights, expected.weights)
+    np.testing.assert_allclose(efficiency.of(values), expected.scores)
 
 
 def test_time_counts_by_its_fourth_root() -> None:
@@ -54,4 +54,27 @@ def test_robust_scores_the_worst_scene() -> None:
     np.testing.assert_allclose(robust.of(values), np.minimum(*by_scene))
     # Of one scene, every pair counts by itself.
     alone = valuation(values, np.zeros(6, np.int64), "robust").of(values)
-    assert (alone <= valuation(values, np.zeros(6, np.int64), "balanced").of(values)).all()
+    assert (alone <= valuation(values, np.zeros(6, np.int64), "efficiency").of(values)).all()
+
+
+def test_links_by_class_multiply_coverage() -> None:
+    criteria = criteria_named(["coverage", "links", "total_seconds"])
+    values = np.ones((2, 4, 3))
+    values[0, :, 0], values[0, :, 1] = 0.9, [1.0, 1.0, 0.0, 0.0]
+    values[1, :, 0], values[1, :, 1] = 0.3, [1.0, 0.5, 0.5, 1.0]
+    values[1, :, 2] = 1024.0
+    settings, classes = SCORE_PRESETS["models"].settings, np.array([0, 0, 1, 1])
+    found = [
+        Valuation(
+            values[..., : 3 if name == "balanced" else 2],
+            criteria[: 3 if name == "balanced" else 2],
+            np.zeros(4, np.int64),
+            settings,
+            OBJECTIVES[name],
+            classes=classes,
+        ).of(values[..., : 3 if name == "balanced" else 2])
+        for name in ("reconstruction", "balanced")
+    ]
+    # By hand: .9 x 1 x .05 / 1.05 and .3 x (.8 / 1.05) ** 2; 1024 times the time halves.
+    np.testing.assert_allclose(found[0], [0.9 * 0.05 / 1.05, 0.3 * (0.8 / 1.05) ** 2])
+    np.testing.assert_allclose(found[1], found[0] * [1.0, 0.5])

@@ -97,8 +97,8 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
         means = sums.means(counts)
         found.append(score_batch(means, table, scores.settings))
         means = replace(means, low=whole.low, high=whole.high)
-        normalised = normalise(means, table, scores.settings.failures) ** scores.settings.alpha
-        on_one_scale.append(normalised @ scores.weights)
+        normalised = normalise(means, table, scores.settings) ** scores.settings.alpha
+        on_one_scale.append(normalised @ scores.weights * means.links)
     values = np.concatenate([batch.scores for batch in found])
     # Alternatives without a score in the table are excluded.
     values[:, np.isnan(scores.scores)] = np.nan

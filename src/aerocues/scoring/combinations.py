@@ -10,12 +10,17 @@ import polars as pl
 
 from aerocues.errors import ScoreError
 from aerocues.results.combination_columns import COMBINATION, METHODS, combination_name
-from aerocues.scoring.criteria import Criterion
+from aerocues.results.pair_classes import pair_class
+from aerocues.scoring.criteria import RIGHT_MATCHES, Criterion
+from aerocues.scoring.links import ENOUGH, Links
 from aerocues.scoring.settings import ScorePreset, score_preset_named
 from aerocues.scoring.table import DecisionTable
 
 PAIR = ("dataset", "sequence", "image_1", "image_2", "pair")
-# Groups of scores: the name of the group, and the methods that form its labels.
+# What is known of a pair, whatever became of a measurement on it.
+OF_PAIRS = ("reference_agreement", "reference_turn")
+REFERENCE = "flow"
+# By what scores are grouped: the plural, and the methods that make a label.
 COMPONENTS: dict[str, tuple[str, ...]] = {
     "detectors": ("detector",),
     "descriptors": ("descriptor",),
@@ -32,9 +37,16 @@ def has_chance_test(rows: pl.DataFrame) -> bool:
     return "chance_inliers" in rows.columns and rows["chance_inliers"].is_not_null().any()
 
 
+def has_reference(rows: pl.DataFrame) -> bool:
+    """Whether some pair has a reference that tells right matches."""
+    return "reference" in rows.columns and bool((rows["reference"] == REFERENCE).any())
+
+
 def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
-    """The preset ``default`` if inliers beyond chance were measured, else ``thesis``."""
-    return score_preset_named("default" if has_chance_test(rows) else "thesis")
+    """The default where pairs have references; else by inliers beyond chance, or the thesis's."""
+    if has_reference(rows):
+        return score_preset_named("default")
+    return score_preset_named("inliers" if has_chance_test(rows) else "thesis")
 
 
 def decision_table(
@@ -43,6 +55,7 @@ def decision_table(
     *,
     reconstructions: pl.DataFrame | None = None,
     chance_fails: bool = True,
+    links: bool = False,
 ) -> DecisionTable:
     """Arrange measured rows: combinations x image pairs x criteria.
 
@@ -57,6 +70,11 @@ def decision_table(
         A combination without a row was not reconstructed and has no score by these criteria.
     chance_fails : bool
         Whether a pair with the status ``chance`` has failed.
+    links : bool
+        Whether scores are multiplied by how surely pairs of each class are linked.
+
+    Pairs without a reference are left out, for all combinations alike, where links or a criterion
+    need one.
 
     Raises
     ------
@@ -72,10 +90,13 @@ def decision_table(
         )
     by_pair = [criterion for criterion in criteria if not criterion.reconstruction]
     if not by_pair:
-        raise ScoreError("all criteria are of the reconstruction; add a criterion of image pairs")
+        raise ScoreError("all criteria are of the reconstruction; add one of the image pairs")
+    if links or any(criterion.reference for criterion in criteria):
+        rows = _with_reference(rows)
     succeeded = SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST
+    named = _named(_without_failures(rows, succeeded))
     table = DecisionTable.from_frame(
-        _named(_without_failures(rows, succeeded)),
+        named,
         alternative=COMBINATION,
         repeat="pair",
         block="sequence",
@@ -90,6 +111,7 @@ def decision_table(
             )
             for component, methods in COMPONENTS.items()
         },
+        links=_links(named, table) if links else None,
     )
     of_models = [criterion for criterion in criteria if criterion.reconstruction]
     if not of_models:
@@ -98,6 +120,32 @@ def decision_table(
         names = ", ".join(criterion.name for criterion in of_models)
         raise ScoreError(f"there are no reconstructions for {names}; leave these criteria out")
     return _with_reconstructions(table, reconstructions, of_models, criteria)
+
+
+def _with_reference(rows: pl.DataFrame) -> pl.DataFrame:
+    if not has_reference(rows):
+        raise ScoreError(
+            "no pair has a reference, which tells right matches; score by inliers (preset inliers)"
+        )
+    # A row of a pair with a reference lacks it where its measurement ended before the comparison.
+    having = rows.filter(pl.col("reference") == REFERENCE).select("pair").unique()
+    return rows.join(having, on="pair", how="semi", maintain_order="left")
+
+
+def _links(rows: pl.DataFrame, table: DecisionTable) -> Links:
+    """How surely each combination links each pair, and whether the pair is turned."""
+    share = np.full((len(table.alternatives), len(table.repeats)), np.nan)
+    alternative = {name: number for number, name in enumerate(table.alternatives)}
+    repeat = {name: number for number, name in enumerate(table.repeats)}
+    right = rows[RIGHT_MATCHES].cast(pl.Float64).fill_null(0.0).to_numpy()
+    positions = (
+        [alternative[name] for name in rows[COMBINATION]],
+        [repeat[str(pair)] for pair in rows["pair"]],
+    )
+    share[positions] = np.minimum(right / ENOUGH, 1.0)
+    turns = rows.group_by("pair").agg(pl.col("reference_turn").max().fill_null(0.0))
+    turned = {str(pair): pair_class(turn) == "turned" for pair, turn in turns.iter_rows()}
+    return Links(share, np.array([turned[name] for name in table.repeats], np.int64))
 
 
 def _named(rows: pl.DataFrame) -> pl.DataFrame:
@@ -111,7 +159,7 @@ def _without_failures(rows: pl.DataFrame, succeeded: Sequence[str]) -> pl.DataFr
     numbers = [
         name
         for name, kind in rows.schema.items()
-        if kind.is_numeric() and name not in (*METHODS, *PAIR)
+        if kind.is_numeric() and name not in (*METHODS, *PAIR, *OF_PAIRS)
     ]
     kept = pl.col("status").is_in(succeeded)
     return rows.with_columns(pl.when(kept).then(pl.col(numbers)))

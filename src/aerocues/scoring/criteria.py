@@ -31,7 +31,9 @@ class Criterion:
     beyond_chance : bool
         Whether it needs the test against chance, which also verifies shuffled matches.
     aspect : {"accuracy", "quantity", "speed", "other"}
-        Aspect by which objectives distribute weights.
+        What it tells of: objectives weigh these.
+    reference : bool
+        Whether only pairs with a reference have it.
 
     Raises
     ------
@@ -46,6 +48,7 @@ class Criterion:
     description: str = ""
     beyond_chance: bool = False
     aspect: Aspect = "other"
+    reference: bool = False
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -135,6 +138,61 @@ _BY_PAIRS: tuple[Criterion, ...] = (
     Criterion("peak_memory_mb", "lower", description="largest increase of memory in one stage"),
 )
 
+RIGHT_MATCHES = "ref_matches@3"
+LINKS = "links"
+_REFERENCE: tuple[Criterion, ...] = (
+    Criterion(
+        "ref_matching_score@3",
+        description="matches right within 3 px of the reference / keypoints of image 1",
+        aspect="accuracy",
+        reference=True,
+    ),
+    Criterion(
+        "ref_precision@3",
+        description="share of matches right within 3 px of the reference",
+        aspect="accuracy",
+        reference=True,
+    ),
+    Criterion(
+        "ref_repeatability",
+        description="covisible keypoints found again within 3 px, by the reference",
+        aspect="accuracy",
+        reference=True,
+    ),
+    Criterion(
+        RIGHT_MATCHES,
+        description="matches right within 3 px of the reference",
+        aspect="quantity",
+        reference=True,
+    ),
+    Criterion(
+        "coverage",
+        description="share of the cells of a 16 x 16 grid on image 1 that hold a right match",
+        aspect="quantity",
+        reference=True,
+    ),
+    Criterion(
+        "sharpness",
+        column='"ref_matches@1" / nullif("ref_matches@3", 0)',
+        description="matches right within 1 px / within 3 px of the reference",
+        aspect="accuracy",
+        reference=True,
+    ),
+    Criterion(
+        LINKS,
+        column=f'least("{RIGHT_MATCHES}" / 60.0, 1.0)',
+        description="how surely a pair is linked: right matches / 60, at most 1",
+        reference=True,
+    ),
+    Criterion(
+        "seconds_per_1k_ref_matches",
+        "lower",
+        description="seconds for 1000 matches right within 3 px of the reference",
+        aspect="speed",
+        reference=True,
+    ),
+)
+
 _GROUND_TRUTH: tuple[Criterion, ...] = (
     *(
         Criterion(f"gt_precision@{t}", description=f"share of matches correct within {t} px")
@@ -190,7 +248,7 @@ _RECONSTRUCTION: tuple[Criterion, ...] = (
     ),
 )
 
-CRITERIA: tuple[Criterion, ...] = (*_BY_PAIRS, *_GROUND_TRUTH, *_RECONSTRUCTION)
+CRITERIA: tuple[Criterion, ...] = (*_BY_PAIRS, *_REFERENCE, *_GROUND_TRUTH, *_RECONSTRUCTION)
 RECONSTRUCTION = tuple(criterion.name for criterion in _RECONSTRUCTION)
 
 

@@ -83,12 +83,12 @@ class Scores:
 
 
 def score_batch(means: Means, table: DecisionTable, settings: ScoreSettings) -> BatchScores:
-    """Score a batch of resamples; weights are estimated anew in each."""
-    normalised = normalise(means, table, settings.failures) ** settings.alpha
+    """Score a batch of resamples, weights estimated anew in each."""
+    normalised = normalise(means, table, settings) ** settings.alpha
     by_method = weights_by_method(normalised, settings.weights)
     weights = aggregate(by_method, settings.aggregation)
     return BatchScores(
-        scores=np.einsum("bac,bc->ba", normalised, weights),
+        scores=np.einsum("bac,bc->ba", normalised, weights) * means.links,
         by_method=by_method,
         weights=weights,
         normalised=normalised,
@@ -121,7 +121,7 @@ def score(table: DecisionTable, settings: ScoreSettings | None = None) -> Scores
     2. Mean of each criterion over the repeats of each alternative.
     3. ``z = (mean - min) / (max - min)``, for a cost ``1 - z``; then ``x = z ** alpha``.
     4. Weights of the criteria from the matrix ``x``, by each method; their aggregate ``w``.
-    5. ``CUES = sum(w * x)``.
+    5. ``CUES = sum(w * x)``, times the factor of the links where the table has them.
 
     Parameters
     ----------

@@ -182,7 +182,13 @@ def table_of(
     listed = criteria_named(names)
     if not has_chance_test(rows):
         _refuse_chance(listed)
-    table = decision_table(rows, listed, reconstructions=models, chance_fails=chosen.chance_fails)
+    table = decision_table(
+        rows,
+        listed,
+        reconstructions=models,
+        chance_fails=chosen.chance_fails,
+        links=chosen.links and criteria is None,
+    )
     machines = tuple(rows["machine"].drop_nulls().unique().sort())
     return MeasuredTable(rows["dataset"][0], table, chosen, _median_seconds(rows), machines)
 

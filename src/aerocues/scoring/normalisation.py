@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.scoring.settings import Failures
+from aerocues.scoring.links import Links
+from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
 
 Array = NDArray[np.float64]
@@ -25,7 +26,9 @@ class Means:
     valid, failed : (batch, alternatives, criteria) float64
         Numbers of repeats.
     low, high : (batch, criteria) float64
-        Smallest and largest value over all repeats of all alternatives.
+        Smallest and largest value of all repeats of all alternatives.
+    links : (batch, alternatives) float64
+        What scores are multiplied by; 1 where the table has no links.
     """
 
     mean: Array
@@ -33,6 +36,7 @@ class Means:
     failed: Array
     low: Array
     high: Array
+    links: Array
 
 
 class Sums:
@@ -45,6 +49,7 @@ class Sums:
 
     def __init__(self, table: DecisionTable) -> None:
         self._shape = (len(table.alternatives), len(table.criteria))
+        self._links = table.links
         by_repeat = table.values.transpose(1, 0, 2)
         missing = np.isnan(by_repeat)
         flat = (len(table.repeats), -1)
@@ -75,6 +80,7 @@ class Sums:
             failed=(counts @ self._failed).reshape(shape),
             low=low,
             high=high,
+            links=_factor(self._links, counts, self._shape[0]),
         )
 
     def _bounds(self, counts: Array) -> tuple[Array, Array]:
@@ -97,32 +103,41 @@ def plain_means(table: DecisionTable) -> Means:
         failed=table.failed.sum(axis=1, dtype=np.float64)[None],
         low=np.where(missing, np.inf, table.values).min(axis=(0, 1))[None],
         high=np.where(missing, -np.inf, table.values).max(axis=(0, 1))[None],
+        links=_factor(table.links, np.ones((1, len(table.repeats))), len(table.alternatives)),
     )
 
 
-def normalise(means: Means, table: DecisionTable, failures: Failures) -> Array:
-    """Normalise all criteria to [0, 1]; 1 is the best.
+def _factor(links: Links | None, counts: Array, alternatives: int) -> Array:
+    return np.ones((len(counts), alternatives)) if links is None else links.factor(counts)
 
-    A criterion with equal values for all alternatives and repeats is 1: no alternative is worse
-    than the best. A failed repeat counts as 0 or is left out. As the normalisation is linear, the
-    mean over valid and failed repeats is the mean over the valid ones times their share.
+
+def normalise(means: Means, table: DecisionTable, settings: ScoreSettings) -> Array:
+    """Bring all criteria into [0, 1], 1 being the best.
+
+    Under the bounds ``unit`` criteria are shares and stay as they are. Otherwise a value equal for
+    all alternatives and repeats is 1: none is worse than the best. A failed repeat counts as 0 or
+    not at all. As normalisation is linear, the mean over valid and failed repeats is that over the
+    valid ones times their share.
 
     Returns
     -------
     (batch, alternatives, criteria) float64
         NaN in all criteria of an alternative without a value in one of them.
     """
-    width = (means.high - means.low)[:, None, :]
-    offset = means.mean - means.low[:, None, :]
+    low, high = means.low, means.high
+    if settings.bounds == "unit":
+        low, high = np.zeros_like(low), np.ones_like(high)
+    width = (high - low)[:, None, :]
+    offset = means.mean - low[:, None, :]
     known = np.isfinite(width) & (width > 0)
     z = np.divide(offset, width, out=np.zeros_like(offset), where=known)
     z = np.where(table.is_cost, 1 - z, z).clip(0, 1)
-    # A power below 1 would amplify the rounding error of a mean of 0: 1e-16 ** 0.1 = 0.025.
-    largest = np.maximum(np.abs(means.low), np.abs(means.high))[:, None, :]
+    # A power below 1 would blow up what rounding of a mean leaves of 0: 1e-16 ** 0.1 = 0.025.
+    largest = np.maximum(np.abs(low), np.abs(high))[:, None, :]
     z[z * np.where(known, width, 1) < ROUNDING * np.where(known, largest, 0)] = 0
     z = np.where(known, z, 1)
     z[np.isnan(means.mean)] = np.nan
-    if failures == "worst":
+    if settings.failures == "worst":
         tried = means.valid + means.failed
         share = np.divide(means.valid, tried, out=np.zeros_like(tried), where=tried > 0)
         z = np.where(tried > 0, np.where(means.valid > 0, z * share, 0), np.nan)

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
-from aerocues.scoring.criteria import Aspect, Criterion
+from aerocues.scoring.criteria import LINKS, Aspect, Criterion
+from aerocues.scoring.settings import ScorePreset, score_preset_named
 
 Array = NDArray[np.float64]
 TIME = "total_seconds"
@@ -24,7 +25,10 @@ class Objective:
     ----------
     name, title : str
     definition : str
-        The score in words.
+        How the score comes about, in words.
+    preset : str
+        The scoring preset whose criteria, bounds and links it takes, where right matches are
+        known by references of the pairs.
     shares : mapping of aspect to float
         Total weight of the criteria of each aspect; within an aspect, it is divided in proportion
         to the estimated weights. Empty: all weights as estimated.
@@ -38,16 +42,26 @@ class Objective:
     name: str
     title: str
     definition: str
+    preset: str = "default"
     shares: Mapping[Aspect, float] = field(default_factory=dict)
     time_power: float = 0.0
     worst: float = 1.0
 
-    def criteria(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Names of the needed criteria: the given ones, and the time if it counts."""
-        return (*names, TIME) if self.time_power and TIME not in names else tuple(names)
+    def scoring(self, *, references: bool) -> ScorePreset:
+        """What measurements are scored by; the thesis's criteria where pairs have no references."""
+        return score_preset_named(self.preset if references else "thesis")
+
+    def criteria(self, scoring: ScorePreset) -> tuple[str, ...]:
+        """Names of the criteria that are needed: with the links and the time where they count."""
+        links = (LINKS,) if scoring.links else ()
+        hurry = (TIME,) if self.time_power and TIME not in scoring.criteria else ()
+        return (*scoring.criteria, *links, *hurry)
 
     def weights(self, estimated: Array, criteria: Sequence[Criterion]) -> Array:
-        """(C,) weights of the criteria, from the estimated weights."""
+        """(C,) weights of the criteria, from those that were estimated.
+
+        What scores are multiplied by, links and time, has weight only where it is a criterion.
+        """
         if not self.shares:
             return estimated
         weights = np.zeros_like(estimated)
@@ -80,9 +94,17 @@ OBJECTIVES: dict[str, Objective] = {
     for objective in (
         Objective(
             "balanced",
-            "a balance of quality and speed",
-            "CUES as in 'aerocues score', with weights estimated from the measurements (in the "
-            "thesis: maximum efficiency)",
+            "good 3D models, in reasonable time",
+            "as reconstruction, times (least seconds / seconds) to the power 0.1: to take 10 times "
+            "as long, it must be a quarter better",
+            preset="models",
+            time_power=0.1,
+        ),
+        Objective(
+            "efficiency",
+            "quality and speed by CUES",
+            "CUES as 'aerocues score' gives it, with weights estimated from the measurements "
+            "(the thesis: maximum efficiency)",
         ),
         Objective(
             "speed",
@@ -95,17 +117,17 @@ OBJECTIVES: dict[str, Objective] = {
         ),
         Objective(
             "accuracy",
-            "correct matches",
-            "CUES with 80 % of the weight on shares (recall, precision, repeatability, F1), 20 % "
-            "on counts and none on time (in the thesis: accuracy first)",
+            "right matches first",
+            "CUES with 80 % of the weight on shares (of right matches, repeatability, sharpness), "
+            "20 % on counts, none on time (the thesis: accuracy first)",
             shares={"accuracy": 0.8, "quantity": 0.2},
         ),
         Objective(
             "reconstruction",
-            "3D models with many points",
-            "CUES with 60 % of the weight on counts (inliers, matches), 40 % on shares and none "
-            "on time",
-            shares={"accuracy": 0.4, "quantity": 0.6},
+            "the best 3D models",
+            "links by class of pairs, turned or not, times coverage by right matches: it chose the "
+            "best model on 9 of 10 flights",
+            preset="models",
         ),
         Objective(
             "robust",

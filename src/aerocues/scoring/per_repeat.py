@@ -31,8 +31,8 @@ def scores_of_repeats(scores: Scores) -> Array:
     for start in range(0, number, BATCH):
         single = np.eye(number)[start : start + BATCH]
         means = sums.means(single, bounds=(whole.low, whole.high))
-        normalised = normalise(means, table, settings.failures) ** settings.alpha
-        columns.append(np.einsum("bac,c->ab", normalised, scores.weights))
+        normalised = normalise(means, table, settings) ** settings.alpha
+        columns.append((normalised @ scores.weights * means.links).T)
     return np.concatenate(columns, axis=1)
 
 

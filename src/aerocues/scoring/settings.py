@@ -14,6 +14,8 @@ Names = str | Sequence[str]
 """Names one by one, or in a text with commas."""
 Failures = Literal["worst", "omit"]
 FAILURES: tuple[Failures, ...] = ("worst", "omit")
+Bounds = Literal["measured", "unit"]
+BOUNDS: tuple[Bounds, ...] = ("measured", "unit")
 
 
 def names_of(names: Names) -> tuple[str, ...]:
@@ -40,7 +42,10 @@ class ScoreSettings:
     aggregation : str
         Aggregation of the weights of the methods: a row of `aggregation.AGGREGATIONS`.
     failures : {"worst", "omit"}
-        Whether a failed repeat counts as the worst value of each criterion, or is left out.
+        Whether a failed repeat counts as the worst value of each criterion, or not at all.
+    bounds : {"measured", "unit"}
+        Whether values are normalised by the smallest and largest measured ones, or by 0 and 1:
+        for criteria that are shares, whose size is to count.
 
     Raises
     ------
@@ -52,6 +57,7 @@ class ScoreSettings:
     weights: tuple[str, ...] = ("entropy", "variance", "critic", "pca")
     aggregation: str = "arithmetic"
     failures: Failures = "worst"
+    bounds: Bounds = "measured"
 
     def __post_init__(self) -> None:
         if not 0 < self.alpha < float("inf"):
@@ -64,6 +70,7 @@ class ScoreSettings:
                 raise ScoreError(f"the method of weighting {name} is given twice; give it once")
         _check(self.aggregation, "aggregation", tuple(AGGREGATIONS))
         _check(self.failures, "treatment of failures", FAILURES)
+        _check(self.bounds, "kind of bounds", BOUNDS)
 
 
 @dataclass(frozen=True)
@@ -73,12 +80,17 @@ class ScorePreset:
     Attributes
     ----------
     name : str
-    criteria, reconstruction_criteria : tuple of str
-        Names of rows of `criteria.CRITERIA`; the second are added if there are reconstructions.
+    criteria : tuple of str
+        Names of rows of `criteria.CRITERIA`.
     settings : ScoreSettings
     chance_fails : bool
         Whether a pair has failed if its model is not better than chance.
     description : str
+    reconstruction_criteria : tuple of str
+        Names of rows that are added where there are reconstructions.
+    links : bool
+        Whether scores are multiplied by how surely pairs of each class are linked; see
+        `links.Links`.
     """
 
     name: str
@@ -91,6 +103,7 @@ class ScorePreset:
         "points_3d",
         "reconstruction_seconds",
     )
+    links: bool = False
 
 
 SCORE_PRESETS: dict[str, ScorePreset] = {
@@ -98,6 +111,32 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
     for preset in (
         ScorePreset(
             "default",
+            (
+                "ref_matching_score@3",
+                "ref_precision@3",
+                "ref_repeatability",
+                "ref_matches@3",
+                "coverage",
+                "sharpness",
+                "seconds_per_1k_ref_matches",
+            ),
+            ScoreSettings(),
+            chance_fails=True,
+            description="matches that are right by the reference, times the links of each class of "
+            "pairs; a failed pair counts as the worst",
+            links=True,
+        ),
+        ScorePreset(
+            "models",
+            ("coverage",),
+            ScoreSettings(alpha=1.0, bounds="unit"),
+            chance_fails=True,
+            description="what leads to good 3D models: coverage by right matches, times the links "
+            "of each class of pairs",
+            links=True,
+        ),
+        ScorePreset(
+            "inliers",
             (
                 "recall_beyond_chance",
                 "precision_beyond_chance",
@@ -110,7 +149,7 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
             ),
             ScoreSettings(),
             chance_fails=True,
-            description="inliers beyond chance; failed pairs count as the worst; CRITIC of 1995",
+            description="inliers beyond chance; a failed pair counts as the worst",
         ),
         ScorePreset(
             "thesis",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.links import Links
 
 if TYPE_CHECKING:
     import polars as pl
@@ -38,7 +39,9 @@ class DecisionTable:
         Block (scene, sequence, day) of each repeat. Repeats of one block are correlated, so that
         only whole blocks are independent.
     components : mapping of str to tuple of str
-        Labels of the alternatives, one per alternative, for grouping.
+        Labels of the alternatives, one an alternative, to group them by.
+    links : Links or None
+        How surely repeats are linked, where that multiplies the scores.
 
     Raises
     ------
@@ -53,6 +56,7 @@ class DecisionTable:
     failed: Mask
     blocks: NDArray[np.int64]
     components: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    links: Links | None = None
 
     def __post_init__(self) -> None:
         names = tuple(criterion.name for criterion in self.criteria)
@@ -74,6 +78,8 @@ class DecisionTable:
         for name, labels in self.components.items():
             if len(labels) != len(self.alternatives):
                 raise ScoreError(f"component {name!r} has {len(labels)} labels; give one for each")
+        if self.links is not None and self.links.share.shape != shape[:2]:
+            raise ScoreError(f"the links have the shape {self.links.share.shape}; give {shape[:2]}")
         self._check_values()
 
     def _check_values(self) -> None:
@@ -147,6 +153,7 @@ class DecisionTable:
                 name: tuple(labels[position] for position in positions)
                 for name, labels in self.components.items()
             },
+            links=self.links.with_alternatives(positions) if self.links else None,
         )
 
     @classmethod

@@ -22,7 +22,9 @@ class CriteriaEvaluator(Protocol):
     components: Mapping[str, Sequence[str]]
     """The methods of each alternative, by kind: detector, descriptor, norm, matcher."""
     blocks: NDArray[np.int64]
-    """(P,) number of each pair's scene or sequence."""
+    """(P,) scene or sequence of each pair."""
+    classes: NDArray[np.int64]
+    """(P,) class of each pair, turned or not, for the links."""
     criteria: Sequence[Criterion]
     predicted_seconds: Array
     """(A,) rough cost of each alternative on a pair."""

@@ -58,6 +58,7 @@ class ImageEvaluator:
             name: [getattr(each, name) for each in combinations] for name in METHODS
         }
         self.blocks = blocks_of([evaluator.context.dataset.pair(pair) for pair in pairs])
+        self.classes = evaluator.classes_of(pairs)
         self.criteria = criteria
         self._evaluator, self._engine, self._session = evaluator, engine, session
         self._combinations, self._pairs, self._device = combinations, pairs, device

@@ -7,7 +7,9 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 
-from aerocues.datasets.dataset import Pair
+import numpy as np
+from numpy.typing import NDArray
+
 from aerocues.evaluation.context import run_facts
 from aerocues.evaluation.cost import estimate_pair_seconds
 from aerocues.evaluation.engine import Engine
@@ -19,6 +21,7 @@ from aerocues.methods.presets import Preset
 from aerocues.progress import Activity
 from aerocues.results.hashing import content_hash
 from aerocues.results.metrics import Row
+from aerocues.results.pair_classes import pair_class
 from aerocues.results.store import Store
 
 Measurement = tuple[int, Combination]
@@ -144,5 +147,18 @@ class PairEvaluator:
             units.append(Unit(detector, (work,), cost))
         return sorted(units, key=lambda unit: -unit.cost)
 
-    def pairs(self) -> list[Pair]:
-        return list(self.context.dataset.pairs)
+    def classes_of(self, pairs: Sequence[int]) -> NDArray[np.int64]:
+        """(P,) 1 where the two images are turned against each other by their reference, else 0.
+
+        Parameters
+        ----------
+        pairs : sequence of int
+            Numbers of pairs; those on which nothing was measured yet count as not turned.
+        """
+        turns = {
+            row["pair"]: row["reference_turn"]
+            for row in self._rows.values()
+            if row.get("reference_turn") is not None
+        }
+        turned = [pair_class(turns.get(pair, 0.0)) == "turned" for pair in pairs]
+        return np.array(turned, np.int64)

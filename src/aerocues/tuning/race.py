@@ -83,7 +83,7 @@ class RaceSettings:
     last_draws: int = 400
     batch: int = 16
     score: ScoreSettings = ScoreSettings()  # noqa: RUF009 - it is frozen
-    objective: Objective = OBJECTIVES["balanced"]
+    objective: Objective = OBJECTIVES["efficiency"]
 
 
 @dataclass(frozen=True)
@@ -287,7 +287,12 @@ class _Race:
         began = self._clock()
         whole = scales.shrink(surrogate.expected)
         value = Valuation(
-            whole, evaluator.criteria, evaluator.blocks, settings.score, settings.objective
+            whole,
+            evaluator.criteria,
+            evaluator.blocks,
+            settings.score,
+            settings.objective,
+            classes=evaluator.classes,
         )
         drawn = []
         for _ in range(draws):

@@ -25,7 +25,7 @@ from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
-from aerocues.scoring.settings import ScorePreset, score_preset_named
+from aerocues.scoring.settings import ScorePreset
 from aerocues.tuning.device import Device, as_device
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
@@ -155,8 +155,9 @@ def recommend(
             own = engine if evaluators.overlap is evaluators.race else other
             seen = find_overlap(evaluators.overlap, own, pairs, session, seed)
         tell.racing(len(chosen), len(seen.overlapping))
-        aim, scoring = OBJECTIVES[objective], score_preset_named(_scoring_of(parts))
-        criteria = criteria_named(aim.criteria(scoring.criteria))
+        aim = OBJECTIVES[objective]
+        scoring = aim.scoring(references=parts.chance_test)
+        criteria = criteria_named(aim.criteria(scoring))
         evaluator = ImageEvaluator(
             evaluators.race, engine, chosen, seen.overlapping, criteria, session, machine
         )
@@ -173,10 +174,6 @@ def recommend(
         store.folder,
         machine.name if machine else context.machine,
     )
-
-
-def _scoring_of(preset: Preset) -> str:
-    return "default" if preset.chance_test else "thesis"
 
 
 def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.scoring.aggregation import aggregate
-from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.criteria import LINKS, Criterion
+from aerocues.scoring.links import Links
 from aerocues.scoring.objectives import TIME, Objective
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.weights import weights_by_method
@@ -31,7 +32,9 @@ class Valuation:
     settings : ScoreSettings
     objective : Objective
     weights : (C,) float64, optional
-        In place of weights from the expected values.
+        In place of those that the expected values give.
+    classes : (P,) int64, optional
+        Class of each pair, for the links; all of one by default.
     """
 
     def __init__(
@@ -42,22 +45,38 @@ class Valuation:
         settings: ScoreSettings,
         objective: Objective,
         weights: Array | None = None,
+        classes: NDArray[np.int64] | None = None,
     ) -> None:
         self._objective = objective
         self._alpha = settings.alpha
         self._is_cost = np.array([each.better == "lower" for each in criteria])
         names = [each.name for each in criteria]
         self._time = names.index(TIME) if objective.time_power else None
-        self._low = expected.min(axis=(0, 1))
-        high = expected.max(axis=(0, 1))
+        self._links = names.index(LINKS) if LINKS in names else None
+        self._classes = np.zeros(expected.shape[1], np.int64) if classes is None else classes
+        low, high = expected.min(axis=(0, 1)), expected.max(axis=(0, 1))
+        if settings.bounds == "unit":
+            low, high = np.zeros_like(low), np.ones_like(high)
+        self._low = low
         self._width = np.where(high > self._low, high - self._low, 1.0)
         self._member = _membership(blocks)
         if weights is None:
-            matrix = self._normalised(expected.mean(axis=1))
-            by_method = weights_by_method(matrix[None], settings.weights)
-            estimated = aggregate(by_method, settings.aggregation)[0]
-            weights = objective.weights(estimated, criteria)
+            weights = self._estimated(expected, criteria, settings)
         self.weights = weights
+
+    def _estimated(
+        self, expected: Array, criteria: Sequence[Criterion], settings: ScoreSettings
+    ) -> Array:
+        """(C,) weights; none for what scores are multiplied by."""
+        counted = np.ones(len(criteria), np.bool_)
+        counted[[place for place in (self._time, self._links) if place is not None]] = False
+        matrix = self._normalised(expected.mean(axis=1))[:, counted]
+        by_method = weights_by_method(matrix[None], settings.weights)
+        estimated = np.zeros(len(criteria))
+        estimated[counted] = aggregate(by_method, settings.aggregation)[0]
+        if not estimated.any():  # all alternatives are alike
+            estimated[counted] = 1.0 / counted.sum()
+        return self._objective.weights(estimated, criteria)
 
     def _normalised(self, values: Array) -> Array:
         share = (values - self._low) / self._width
@@ -73,6 +92,9 @@ class Valuation:
             scores = self._objective.over_blocks(self._normalised(by_block) @ self.weights)
         else:
             scores = self._normalised(mean) @ self.weights
+        if self._links is not None:
+            links = Links(values[..., self._links], self._classes)
+            scores = scores * links.factor(np.ones((1, values.shape[1])))[0]
         if self._time is not None:
             scores = scores * self._objective.hurry(mean[:, self._time])
         return np.asarray(scores)
