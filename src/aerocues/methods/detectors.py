@@ -31,6 +31,10 @@ class DetectorRow:
         Whether it is known to corrupt the memory of its process: it then gets a process of its own.
     limit : str or None
         The parameter by which it chooses the best so many keypoints itself.
+    threshold : tuple of str and float, or None
+        The parameter that the strength of a keypoint must exceed, and the least value that still
+        makes sense: below it noise and compression give keypoints. It is lowered where a number of
+        keypoints is to be reached.
     origin : str
         ``opencv`` or the name of the distribution that brings it.
     unavailable : str or None
@@ -45,6 +49,7 @@ class DetectorRow:
     seconds_per_megapixel: float = 0.5
     unstable: bool = False
     limit: str | None = None
+    threshold: tuple[str, float] | None = None
     origin: str = OPENCV
     unavailable: str | None = None
 
@@ -64,6 +69,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         8_000,
         0.25,
         limit="nfeatures",
+        threshold=("contrastThreshold", 0.0025),
     ),
     DetectorRow(
         "AKAZE",
@@ -81,6 +87,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Alcantarilla et al., Fast explicit diffusion for accelerated features, BMVC 2013",
         3_500,
         0.15,
+        threshold=("threshold", 3e-05),
     ),
     DetectorRow(
         "ORB",
@@ -100,6 +107,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         25_000,
         0.04,
         limit="nfeatures",
+        threshold=("fastThreshold", 4),
     ),
     DetectorRow(
         "BRISK",
@@ -108,6 +116,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Leutenegger et al., BRISK: binary robust invariant scalable keypoints, ICCV 2011",
         12_000,
         0.3,
+        threshold=("thresh", 6),
     ),
     DetectorRow(
         "KAZE",
@@ -123,6 +132,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Alcantarilla et al., KAZE features, ECCV 2012",
         2_000,
         1.0,
+        threshold=("threshold", 0.0001),
     ),
     DetectorRow(
         "FAST",
@@ -131,6 +141,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Rosten and Drummond, Machine learning for high-speed corner detection, ECCV 2006",
         20_000,
         0.01,
+        threshold=("threshold", 2),
     ),
     DetectorRow(
         "MSER",
@@ -159,6 +170,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "test, ECCV 2010",
         15_000,
         0.01,
+        threshold=("threshold", 3),
     ),
     DetectorRow(
         "GFTT",
@@ -175,6 +187,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         25_000,
         0.03,
         limit="maxCorners",
+        threshold=("qualityLevel", 0.0003),
     ),
     DetectorRow(
         "GFTT_H",
@@ -191,6 +204,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         5_000,
         0.03,
         limit="maxCorners",
+        threshold=("qualityLevel", 1e-05),
     ),
     DetectorRow(
         "STAR",
@@ -205,6 +219,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Agrawal et al., CenSurE: center surround extremas, ECCV 2008",
         10_000,
         0.03,
+        threshold=("responseThreshold", 1),
     ),
     DetectorRow(
         "HL",
@@ -220,6 +235,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         15_000,
         3.0,
         limit="maxCorners",
+        threshold=("corn_thresh", 0.0001),
     ),
     DetectorRow(
         "MSD",
@@ -238,6 +254,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         "Tombari and Di Stefano, Interest points via maximal self-dissimilarities, ACCV 2014",
         5_000,
         4.0,
+        threshold=("m_th_saliency", 10.0),
     ),
     DetectorRow(
         "TBMR",
