@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from aerocues.datasets.dataset import GpsPosition, Image
 from aerocues.datasets.decoded import DecodedSource, pixels_of
 from aerocues.datasets.decoding import FileSource
+from aerocues.pipeline.block import connected_block
 from aerocues.pipeline.candidates import candidate_pairs
 from aerocues.pipeline.pipeline import Pipeline
 from aerocues.pipeline.representative import (
@@ -144,3 +145,15 @@ def test_few_pairs_are_all_taken_and_groups_are_counted() -> None:
     assert (found.held, found.components) == (4, 2)
     assert enough_pairs(100, 24) == 50
     assert enough_pairs(10, 24) == 24
+
+
+def test_a_block_is_connected_and_spans_strips() -> None:
+    survey = made_up()
+    block = connected_block(survey, 8)
+    assert len(block) == 8
+    inside = {int(name) for name in block}
+    pairs = [pair for pair in survey.pairs if {pair.image_1, pair.image_2} <= inside]
+    assert {place_of(pair) for pair in pairs} >= {"turned", "along"}
+    part = Survey(tuple(block), (), ())
+    assert connected_block(part, 3) == block[:3]
+    assert len(connected_block(survey, 99)) == len(survey.images)
