@@ -24,7 +24,7 @@ from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import StageError
 from aerocues.pipeline.pair_stages import PairStages, matched_points
-from aerocues.pipeline.protocol import MeasurementProtocol, Verification
+from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.pipeline.verification import estimate_homography, magsac_parameters
 from aerocues.results.pair_classes import PairClass, pair_class
 
@@ -40,6 +40,8 @@ PRESET = Preset(
 )
 # Takes out the large motion; relief lies off the plane.
 PLANE = Verification(threshold=5.0, confidence=0.999, max_iterations=2000)
+# Few shuffles, with a larger factor instead: most candidates of a survey do not overlap.
+CHANCE = ChanceTest(shuffles=2, factor=1.7, guided_factor=1.7)
 FEWEST_INLIERS = 15
 GRID = 16
 
@@ -116,7 +118,7 @@ class Surveyor:
 
     def __init__(self, images: Sequence[Image], seed: int = 0) -> None:
         methods = LIMIT.limited(opencv_methods().with_preset(PRESET))
-        protocol = MeasurementProtocol.of_preset(PRESET, seed=seed, limit=LIMIT)
+        protocol = MeasurementProtocol(seed=seed, chance=CHANCE, limit=LIMIT)
         matcher = "FLANN" if why_not_exact() else "EXACT"
         self._combination = Combination("SIFT", "SIFT", "L2", matcher)
         self._images = images

@@ -86,7 +86,7 @@ def find_overlap(
 ) -> Seen:
     """Find the pairs that overlap: those on which a probe finds a model that beats chance.
 
-    If a quarter of the budget is not enough for all pairs, an evenly spread part of them is tested.
+    If a quarter of the budget that is left is not enough for all pairs, an evenly spread part of them is tested.
     The test may take longer only until two overlapping pairs are found.
 
     Parameters
@@ -134,6 +134,10 @@ class _OverlapTest:
     overlapping: set[int] = field(default_factory=set)
     others: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
+    begun: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.begun = min(self.session.spent, self.session.budget)
 
     def run(self, pairs: Sequence[int]) -> None:
         """Test pairs with one probe after the other, each on the pairs still without a model."""
@@ -146,7 +150,7 @@ class _OverlapTest:
         asked = [(pair, probe) for pair in pairs if self.evaluator.possible((pair, probe))]
         if not asked:
             return list(pairs)
-        until = self._share() * self.session.budget
+        until = self.begun + self._share() * (self.session.budget - self.begun)
         missing = self.session.measure(self.evaluator, self.engine, asked, until=until)
         late = {pair for pair, _ in asked if self.evaluator.row_key((pair, probe)) in missing}
         found = {pair for pair, _ in asked if pair not in late and self._is_ok(pair, probe)}
