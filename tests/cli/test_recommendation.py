@@ -10,6 +10,7 @@ import pytest
 
 from aerocues.cli.recommendation import answer
 from aerocues.datasets.catalog import open_dataset
+from aerocues.methods.presets import METHOD_PRESETS
 from aerocues.phrases import likelihood
 from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.tuning.race import RaceOutcome, Round
@@ -48,6 +49,7 @@ def found(photos: Path, chances: Sequence[float], unseen: tuple[int, ...] = ()) 
         len(names),
         photos,
         "a computer",
+        METHOD_PRESETS[0],
     )
 
 

@@ -55,7 +55,8 @@ def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:
 def test_every_objective_weighs_what_its_preset_measures(name: str, references: bool) -> None:
     objective = OBJECTIVES[name]
     scoring = objective.scoring(references=references)
-    assert scoring.name == (objective.preset if references else "thesis")
+    assert scoring.name == (objective.preset if references else "inliers")
+    assert objective.scoring(references=False, chance_test=False).name == "thesis"
     criteria = criteria_named(objective.criteria(scoring))
     weights = objective.weights(np.full(len(criteria), 1 / len(criteria)), criteria)
     assert weights.sum() == pytest.approx(1)

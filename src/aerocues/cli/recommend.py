@@ -137,7 +137,7 @@ def recommend(
 
 def _print(found: Recommendation, top: int, *, explain: bool) -> None:
     from aerocues.cli.console import print_table, standard_output
-    from aerocues.cli.recommendation import answer, ranking, story
+    from aerocues.cli.recommendation import answer, quality_note, ranking, story
 
     console = standard_output()
     if explain:
@@ -147,8 +147,7 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
     console.print(answer(found), soft_wrap=True, markup=False)
     console.print()
     print_table(console, ranking(found, top))
-    if found.ranked["excess_inliers"].is_not_null().any():
-        console.print("* minus the inliers of the same matches, shuffled; medians.")
+    console.print(f"* {quality_note(found)}; medians.")
     console.print(
         "Scores are expected values of a full measurement; brute force is timed on a sample."
     )

@@ -110,19 +110,16 @@ def _why(found: Recommendation, best: dict[str, Any]) -> list[str]:
         value = ranked[name].median()
         return float(value) if isinstance(value, int | float) else float("nan")
 
-    beyond = "precision_beyond_chance" if best["excess_inliers"] is not None else "precision"
-    inliers = "excess_inliers" if best["excess_inliers"] is not None else "inliers"
-    what = " beyond chance" if inliers == "excess_inliers" else ""
-    number, ratio = f"{best[inliers]:,.0f} inliers{what} per pair", f"{best[beyond]:.3f}"
+    share, column, name = _quality(ranked)
+    number, ratio = f"{best[column] or 0.0:,.0f} {name} a pair", f"{best[share] or 0.0:.3f}"
     if others == 1:
         number += "; no other combination succeeded"
     else:
-        number += f"; the median of the {others} successful combinations is "
-        number += f"{median(inliers):,.0f}"
-        ratio += f" ({median(beyond):.3f})"
+        number += f"; the median of the {others} successful combinations is {median(column):,.0f}"
+        ratio += f" (median {median(share):.3f})"
     return [
         number,
-        f"inlier ratio{what} {ratio}",
+        f"share of the matches {ratio}",
         f"{best['succeeded']} of {count(best['pairs'], 'pair')} succeeded",
     ]
 
@@ -152,30 +149,58 @@ def _faster(found: Recommendation, best: dict[str, Any]) -> list[str]:
 
 
 def _notes(found: Recommendation) -> list[str]:
-    notes = []
-    if found.seen.others:
+    seen = found.seen
+    notes = list(found.flight.notes()) if found.flight else []
+    if seen.others:
         notes.append(
-            f"{count(len(found.seen.others), 'pair')} left out: no model beats chance there, the "
+            f"{count(len(seen.others), 'pair')} left out: no model beats chance there, the "
             "images may not overlap"
         )
-    stood = len(found.seen.overlapping) + len(found.seen.others)
-    if stood < found.candidates:
-        why = "; a larger --budget tests more" if found.seen.unseen else ""
+    lacking = len(seen.overlapping) - len(seen.referenced)
+    if seen.referenced and lacking:
+        notes.append(
+            f"{count(lacking, 'pair')} left out: it is not known which matches are right there "
+            "(heavy blur, wide steps or large changes)"
+        )
+    stood = len(seen.overlapping) + len(seen.others)
+    if not found.flight and stood < found.candidates:
+        why = "; a larger --budget tests more" if seen.unseen else ""
         notes.append(f"{count(stood, 'pair')}, evenly spread, of {found.candidates} were used{why}")
-    if len(found.seen.overlapping) < 5:
-        more = "" if found.seen.unseen else "; give more images that overlap"
+    if len(seen.overlapping) < 5:
+        more = "" if seen.unseen else "; give more images that overlap"
         notes.append(f"fewer than 5 pairs say little about other pairs{more}")
+    short = [each for each in found.footings if each.keypoints and not each.reached]
+    if short:
+        listed = ", ".join(f"{each.detector} {each.keypoints:,}" for each in short)
+        notes.append(f"even at their lowest thresholds these find fewer keypoints: {listed}")
     return notes
+
+
+def quality_note(found: Recommendation) -> str:
+    """What the figures of matches in the table mean."""
+    return {
+        "right matches": "right within 3 px of the reference, a dense flow between the two images",
+        "inliers beyond chance": "minus the inliers of the same matches, shuffled",
+        "inliers": "matches that agree with the model",
+    }[_quality(found.ranked)[2]]
+
+
+def _quality(ranked: pl.DataFrame) -> tuple[str, str, str]:
+    """The columns of the share and the number of good matches, and what those are called."""
+    for share, number, name in (
+        ("ref_precision@3", "ref_matches@3", "right matches"),
+        ("precision_beyond_chance", "excess_inliers", "inliers beyond chance"),
+    ):
+        if number in ranked.columns and ranked[number].is_not_null().any():
+            return share, number, name
+    return "precision", "inliers", "inliers"
 
 
 def ranking(found: Recommendation, top: int) -> Table:
     """The best combinations by expected score."""
-    headings = ("score", "best with", "pairs ok", "inlier ratio*", "inliers*", "seconds a pair")
+    share, number, name = _quality(found.ranked)
+    headings = ("score", "best with", "pairs ok", "share*", f"{name}*", "seconds a pair")
     table = plain_table("rank", "combination", *headings, numbers=len(headings))
-    chance_tested = found.ranked["excess_inliers"].is_not_null().any()
-    ratio, inliers = (
-        ("precision_beyond_chance", "excess_inliers") if chance_tested else ("precision", "inliers")
-    )
     for rank, row in enumerate(found.ranked.head(top).iter_rows(named=True), start=1):
         table.add_row(
             f"{rank}",
@@ -183,8 +208,8 @@ def ranking(found: Recommendation, top: int) -> Table:
             f"{row['score']:.3f}",
             likelihood(row["probability"]),
             f"{row['succeeded']}/{row['pairs']}",
-            f"{row[ratio]:.3f}",
-            f"{row[inliers]:,.0f}",
+            f"{row[share] or 0.0:.3f}",
+            f"{row[number] or 0.0:,.0f}",
             f"{row['total_seconds']:.2f}",
         )
     return table

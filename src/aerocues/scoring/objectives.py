@@ -47,9 +47,18 @@ class Objective:
     time_power: float = 0.0
     worst: float = 1.0
 
-    def scoring(self, *, references: bool) -> ScorePreset:
-        """What measurements are scored by; the thesis's criteria where pairs have no references."""
-        return score_preset_named(self.preset if references else "thesis")
+    def scoring(self, *, references: bool, chance_test: bool = True) -> ScorePreset:
+        """The preset that measurements are scored by.
+
+        Parameters
+        ----------
+        references : bool
+            Whether pairs have references.
+        chance_test : bool
+            Whether inliers beyond chance were measured.
+        """
+        fallback = "inliers" if chance_test else "thesis"
+        return score_preset_named(self.preset if references else fallback)
 
     def criteria(self, scoring: ScorePreset) -> tuple[str, ...]:
         """Names of the criteria that are needed: with the links and the time where they count."""

@@ -18,6 +18,7 @@ from aerocues.evaluation.planned_rows import PlannedRow, planned_table
 from aerocues.evaluation.unit import Context, PairWork, Unit
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
+from aerocues.pipeline.reference import FLOW
 from aerocues.progress import Activity
 from aerocues.results.hashing import content_hash
 from aerocues.results.metrics import Row
@@ -162,3 +163,8 @@ class PairEvaluator:
         }
         turned = [pair_class(turns.get(pair, 0.0)) == "turned" for pair in pairs]
         return np.array(turned, np.int64)
+
+    def with_reference(self) -> frozenset[int]:
+        """Numbers of the pairs that have a reference, as far as something was measured on them."""
+        found = self._rows.values()
+        return frozenset(row["pair"] for row in found if row.get("reference") == FLOW)

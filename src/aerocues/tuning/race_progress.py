@@ -23,6 +23,8 @@ class RaceProgress:
     def __init__(self, progress: Progress | None, budget: float) -> None:
         self._progress, self._budget = progress, budget
         self._stage = StageProgress(progress, "reading images", "images")
+        self._surveyed: StageProgress | None = None
+        self._reached: StageProgress | None = None
         self.read = self._stage.count
 
     def looking(self, pairs: int) -> None:
@@ -30,6 +32,20 @@ class RaceProgress:
         self._stage = StageProgress(self._progress, "comparing images", "pairs")
         what = f"looking which of {count(pairs, 'pair')} show the same things"
         self._stage.tell(message=what, standing=what)
+
+    def surveyed(self, done: int, total: int) -> None:
+        """So many images and pairs of a flight were looked at."""
+        if not done or self._surveyed is None:
+            self._surveyed = StageProgress(
+                self._progress, "surveying the flight", "images and pairs"
+            )
+        self._surveyed.count(done, total)
+
+    def reached(self, done: int, total: int) -> None:
+        """The thresholds of so many detectors were set."""
+        if self._reached is None:
+            self._reached = StageProgress(self._progress, "setting thresholds", "detectors")
+        self._reached.count(done, total)
 
     def racing(self, combinations: int, pairs: int) -> None:
         """The race begins."""

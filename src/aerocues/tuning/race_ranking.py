@@ -18,7 +18,10 @@ from aerocues.tuning.race import RaceOutcome
 if TYPE_CHECKING:
     import polars as pl
 
-MEDIANS = ("precision_beyond_chance", "precision", "excess_inliers", "inliers")
+MEDIANS = (
+    *("precision_beyond_chance", "precision", "excess_inliers", "inliers"),
+    *("ref_precision@3", "ref_matches@3", "coverage"),
+)
 
 
 def race_ranking(

@@ -20,6 +20,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
+from aerocues.pipeline.equal_footing import Footing, reach_keypoints, survey_image
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
@@ -27,6 +28,7 @@ from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScorePreset
 from aerocues.tuning.device import Device, as_device
+from aerocues.tuning.flight_pairs import leaves_pairs_open, survey_flight
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
@@ -34,7 +36,7 @@ from aerocues.tuning.race import RaceSettings, race
 from aerocues.tuning.race_progress import RaceProgress
 from aerocues.tuning.race_ranking import race_ranking
 from aerocues.tuning.recommendation import Recommendation
-from aerocues.tuning.representative import FEWEST_PAIRS, find_overlap, probes, spread_pairs
+from aerocues.tuning.representative import FEWEST_PAIRS, Seen, find_overlap, probes, spread_pairs
 from aerocues.tuning.session import Session
 
 
@@ -139,13 +141,24 @@ def recommend(
     engine_here = local_engine("estimated", workers)
     if not isinstance(dataset, Dataset):
         dataset = open_dataset(dataset, max_width=max_width)
-    pairs = spread_pairs(dataset.pairs, max_pairs, seed)
-    part = replace(dataset, pairs=pairs, images=_used(dataset, pairs))
+    store = Store.create(Path(output or f"{dataset.name}-race"))
+    tell = RaceProgress(progress, seconds)
+    flight = None
+    if leaves_pairs_open(dataset):
+        flight = survey_flight(dataset, max_pairs, seed, tell.surveyed)
+    pairs = list(flight.dataset.pairs) if flight else spread_pairs(dataset.pairs, max_pairs, seed)
+    part = replace(flight.dataset if flight else dataset, pairs=pairs, images=_used(dataset, pairs))
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
-    store = Store.create(Path(output or f"{dataset.name}-race"))
+    footings: list[Footing] = []
+    if limit.count and parts.chance_test:
+        detectors = list(dict.fromkeys(each.detector for each in chosen))
+        image = survey_image(part.images)
+        parts, footings = reach_keypoints(
+            context.methods, parts, image, detectors, limit.count, seed=seed, progress=tell.reached
+        )
+        context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     context = replace(context, references=store.references)
-    tell = RaceProgress(progress, seconds)
     with store.writing(), engine_here.standing(context) as engine:
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
         journal = Journal.read(store.folder, _key(evaluators, chosen, options), seconds)
@@ -154,12 +167,14 @@ def recommend(
         with engine_here.standing(evaluators.overlap.context) as other:
             own = engine if evaluators.overlap is evaluators.race else other
             seen = find_overlap(evaluators.overlap, own, pairs, session, seed)
-        tell.racing(len(chosen), len(seen.overlapping))
         aim = OBJECTIVES[objective]
-        scoring = aim.scoring(references=parts.chance_test)
+        seen = _with_references(seen, evaluators.race) if parts.chance_test else seen
+        scoring = aim.scoring(references=bool(seen.referenced), chance_test=parts.chance_test)
+        raced = seen.referenced or seen.overlapping
+        tell.racing(len(chosen), len(raced))
         criteria = criteria_named(aim.criteria(scoring))
         evaluator = ImageEvaluator(
-            evaluators.race, engine, chosen, seen.overlapping, criteria, session, machine
+            evaluators.race, engine, chosen, raced, criteria, session, machine
         )
         outcome = race(evaluator, options.settings(aim, scoring), tell.round)
     return Recommendation(
@@ -168,12 +183,21 @@ def recommend(
         len(dataset.pairs),
         aim,
         outcome,
-        race_ranking(evaluators.race, chosen, seen.overlapping, outcome, machine),
+        race_ranking(evaluators.race, chosen, raced, outcome, machine),
         len(chosen),
         int(outcome.known.any(axis=1).sum()),
         store.folder,
         machine.name if machine else context.machine,
+        parts,
+        tuple(footings),
+        flight,
     )
+
+
+def _with_references(seen: Seen, evaluator: PairEvaluator) -> Seen:
+    """The same, with the pairs that have a reference: right matches are known on these alone."""
+    known = evaluator.with_reference()
+    return replace(seen, referenced=tuple(pair for pair in seen.overlapping if pair in known))
 
 
 def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:

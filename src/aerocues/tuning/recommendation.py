@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.datasets.dataset import Dataset
+from aerocues.methods.presets import Preset
 from aerocues.notebooks import as_html
 from aerocues.phrases import count, likelihood
+from aerocues.pipeline.equal_footing import Footing
 from aerocues.scoring.objectives import Objective
+from aerocues.tuning.flight_pairs import SurveyedFlight
 from aerocues.tuning.race import RaceOutcome
 from aerocues.tuning.representative import Seen
 
@@ -33,7 +36,8 @@ class Recommendation:
     ranked : pl.DataFrame
         One row a combination that was measured with success, the best first: ``combination,
         score, probability, pairs, succeeded``, medians over its pairs of
-        ``precision_beyond_chance, excess_inliers, total_seconds`` and of the stages, one image
+        ``precision_beyond_chance, excess_inliers, ref_precision@3, ref_matches@3, coverage,
+        total_seconds`` and of the stages, one image
         each: ``detect_seconds, describe_seconds, match_seconds, verify_seconds``.
     combinations, measured : int
         How many raced, and how many of them were measured at all.
@@ -41,6 +45,12 @@ class Recommendation:
         With all that was measured.
     machine : str
         Whose times count.
+    preset : Preset
+        Of the methods, with the thresholds that were lowered to reach a number of keypoints.
+    footings : tuple of Footing
+        What became of each detector's threshold; empty where nothing was to be reached.
+    flight : SurveyedFlight or None
+        What a survey saw, where pairs were chosen by one.
     """
 
     dataset: Dataset
@@ -53,6 +63,9 @@ class Recommendation:
     measured: int
     folder: Path
     machine: str
+    preset: Preset
+    footings: tuple[Footing, ...] = ()
+    flight: SurveyedFlight | None = None
 
     def __repr__(self) -> str:
         chance = likelihood(float(self.ranked["probability"][0]))

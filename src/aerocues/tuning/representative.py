@@ -32,12 +32,14 @@ TESTING, SEARCHING = 0.25, 0.6
 class Seen:
     """Numbers of the pairs whose images overlap, and of the others.
 
-    `unseen` are the pairs for which there was no time.
+    `unseen` are the pairs for which there was no time, `referenced` those that overlap and have a
+    reference, which tells right matches.
     """
 
     overlapping: tuple[int, ...]
     others: tuple[int, ...]
     unseen: tuple[int, ...] = ()
+    referenced: tuple[int, ...] = ()
 
 
 def spread_pairs(pairs: Sequence[Pair], most: int = RACE_PAIRS, seed: int = 0) -> list[Pair]:
@@ -86,7 +88,8 @@ def find_overlap(
 ) -> Seen:
     """Find the pairs that overlap: those on which a probe finds a model that beats chance.
 
-    If a quarter of the budget that is left is not enough for all pairs, an evenly spread part of them is tested.
+    If a quarter of what is left of the budget is not enough for all pairs, an evenly spread part of
+    them is tested.
     The test may take longer only until two overlapping pairs are found.
 
     Parameters

@@ -1,0 +1,114 @@
+"""The pairs of a flight on which combinations race, chosen by a survey of its images."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from aerocues.datasets.catalog import takes_pairs
+from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.pipeline.representative import (
+    Representatives,
+    enough_pairs,
+    place_of,
+    representatives,
+)
+from aerocues.pipeline.survey import Survey, Surveyor
+
+FEWEST_IMAGES = 3
+"""Two images are one pair: there is nothing to choose."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurveyedFlight:
+    """A flight with pairs that stand for all of its pairs.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With the representative pairs.
+    survey : Survey
+    chosen : Representatives
+    """
+
+    dataset: Dataset
+    survey: Survey
+    chosen: Representatives
+
+    def notes(self) -> list[str]:
+        """What the survey saw, and what it warns of, a sentence each."""
+        survey, chosen = self.survey, self.chosen
+        turned = sum(pair.kind == "turned" for pair in survey.pairs)
+        used = sum(place_of(pair) == "turned" for pair in chosen.pairs)
+        notes = [
+            f"{len(survey.pairs)} of {len(survey.candidates)} pairs that may overlap do so, "
+            f"{turned} of them turned against each other; {len(chosen.pairs)} stand for them, "
+            f"{used} of them turned"
+        ]
+        if chosen.components > 1:
+            notes.append(
+                f"the images fall into {chosen.components} groups that no pair joins: no "
+                "combination may make one model of them"
+            )
+        alone = [
+            name for name, count in zip(survey.images, survey.partners(), strict=True) if not count
+        ]
+        unreadable = [name for name, _ in survey.unreadable]
+        for what, names in (
+            ("overlap with no other", alone),
+            ("cannot be read", unreadable),
+        ):
+            if names:
+                shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+                notes.append(f"{len(names)} of {len(survey.images)} images {what}: {shown}")
+        return notes
+
+
+def leaves_pairs_open(dataset: Dataset) -> bool:
+    """Whether nobody chose the pairs of a flight: they are then the consecutive ones."""
+    source = dataset.source
+    return (
+        source is not None
+        and source.pairs is None
+        and source.max_pairs is None
+        and dataset.geometry == "epipolar"
+        and len(dataset.images) >= FEWEST_IMAGES
+        and takes_pairs(source.spec)
+        and len({pair.sequence for pair in dataset.pairs}) == 1
+    )
+
+
+def survey_flight(
+    dataset: Dataset, most: int, seed: int, progress: Callable[[int, int], None]
+) -> SurveyedFlight | None:
+    """A flight with representative pairs in place of the consecutive ones.
+
+    Consecutive pairs show one strip. A drone turns round and flies the next one back, so that
+    neighbours across strips are turned by 180 degrees.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    most : int
+        Pairs; more only where fewer cannot hold all images.
+    seed : int
+    progress : callable
+        Called with how many images and pairs of how many were looked at.
+
+    Returns
+    -------
+    SurveyedFlight or None
+        None where no two images overlap: measuring then says why.
+    """
+    survey = Surveyor(dataset.images, seed).survey(progress)
+    chosen = representatives(survey, enough_pairs(len(dataset.images), most), seed)
+    if not chosen.pairs:
+        return None
+    sequence = dataset.pairs[0].sequence
+    pairs = [
+        Pair(number, survey.images[pair.image_1], survey.images[pair.image_2], sequence)
+        for number, pair in enumerate(chosen.pairs)
+    ]
+    others = tuple(each for each in dataset.settings if each[0] != "pairs")
+    settings = (*others, ("pairs", f"representative:{len(pairs)}"))
+    return SurveyedFlight(replace(dataset, pairs=pairs, settings=settings), survey, chosen)
