@@ -28,9 +28,9 @@ from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verifica
 from aerocues.pipeline.verification import estimate_homography, magsac_parameters
 from aerocues.results.pair_classes import PairClass, pair_class
 
-WIDTH = 500
+WIDTH = 640
 """Pixels to which images are shrunk: enough to tell which of them overlap."""
-LIMIT = KeypointLimit(800)
+LIMIT = KeypointLimit(1200)
 # SIFT turns with the image and finds something in nearly every scene at this threshold.
 PRESET = Preset(
     "survey",
@@ -40,9 +40,9 @@ PRESET = Preset(
 )
 # Takes out the large motion; relief lies off the plane.
 PLANE = Verification(threshold=5.0, confidence=0.999, max_iterations=2000)
-# Few shuffles, with a larger factor instead: most candidates of a survey do not overlap.
-CHANCE = ChanceTest(shuffles=2, factor=1.7, guided_factor=1.7)
-FEWEST_INLIERS = 15
+# Few shuffles: most candidates of a survey do not overlap, and each costs all of them.
+CHANCE = ChanceTest(shuffles=3)
+FEWEST_INLIERS = 12
 GRID = 16
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.datasets.catalog import takes_pairs
 from aerocues.datasets.dataset import Dataset, Pair
@@ -34,6 +37,11 @@ class SurveyedFlight:
     dataset: Dataset
     survey: Survey
     chosen: Representatives
+
+    def classes_of(self, pairs: Sequence[int]) -> NDArray[np.int64]:
+        """(P,) 1 where the two images of a representative pair are turned, else 0."""
+        turned = [self.chosen.pairs[pair].kind == "turned" for pair in pairs]
+        return np.array(turned, np.int64)
 
     def notes(self) -> list[str]:
         """What the survey saw, and what it warns of, a sentence each."""

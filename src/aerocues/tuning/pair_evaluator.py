@@ -164,7 +164,8 @@ class PairEvaluator:
         turned = [pair_class(turns.get(pair, 0.0)) == "turned" for pair in pairs]
         return np.array(turned, np.int64)
 
-    def with_reference(self) -> frozenset[int]:
-        """Numbers of the pairs that have a reference, as far as something was measured on them."""
-        found = self._rows.values()
-        return frozenset(row["pair"] for row in found if row.get("reference") == FLOW)
+    def without_reference(self) -> frozenset[int]:
+        """Numbers of the measured pairs that have no reference: no match is known to be right."""
+        found = [row for row in self._rows.values() if row.get("reference") is not None]
+        having = {row["pair"] for row in found if row["reference"] == FLOW}
+        return frozenset(row["pair"] for row in found) - having

@@ -146,18 +146,12 @@ def recommend(
     flight = None
     if leaves_pairs_open(dataset):
         flight = survey_flight(dataset, max_pairs, seed, tell.surveyed)
-    pairs = list(flight.dataset.pairs) if flight else spread_pairs(dataset.pairs, max_pairs, seed)
-    part = replace(flight.dataset if flight else dataset, pairs=pairs, images=_used(dataset, pairs))
+    part = flight.dataset if flight else _spread(dataset, max_pairs, seed)
+    pairs = part.pairs
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
-    footings: list[Footing] = []
-    if limit.count and parts.chance_test:
-        detectors = list(dict.fromkeys(each.detector for each in chosen))
-        image = survey_image(part.images)
-        parts, footings = reach_keypoints(
-            context.methods, parts, image, detectors, limit.count, seed=seed, progress=tell.reached
-        )
-        context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
+    parts, footings = _at_equal_footing(context, parts, chosen, tell)
+    context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     context = replace(context, references=store.references)
     with store.writing(), engine_here.standing(context) as engine:
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
@@ -168,7 +162,7 @@ def recommend(
             own = engine if evaluators.overlap is evaluators.race else other
             seen = find_overlap(evaluators.overlap, own, pairs, session, seed)
         aim = OBJECTIVES[objective]
-        seen = _with_references(seen, evaluators.race) if parts.chance_test else seen
+        seen = _raceable(seen, evaluators.race, parts, surveyed=flight is not None)
         scoring = aim.scoring(references=bool(seen.referenced), chance_test=parts.chance_test)
         raced = seen.referenced or seen.overlapping
         tell.racing(len(chosen), len(raced))
@@ -176,6 +170,8 @@ def recommend(
         evaluator = ImageEvaluator(
             evaluators.race, engine, chosen, raced, criteria, session, machine
         )
+        if flight:
+            evaluator.classes = flight.classes_of(raced)
         outcome = race(evaluator, options.settings(aim, scoring), tell.round)
     return Recommendation(
         part,
@@ -194,10 +190,34 @@ def recommend(
     )
 
 
-def _with_references(seen: Seen, evaluator: PairEvaluator) -> Seen:
-    """The same, with the pairs that have a reference: right matches are known on these alone."""
-    known = evaluator.with_reference()
-    return replace(seen, referenced=tuple(pair for pair in seen.overlapping if pair in known))
+def _at_equal_footing(
+    context: Context, preset: Preset, chosen: Sequence[Combination], tell: RaceProgress
+) -> tuple[Preset, list[Footing]]:
+    """The preset with thresholds that reach the number of keypoints; the thesis's stays."""
+    count = context.protocol.limit.count
+    if not count or not preset.chance_test:
+        return preset, []
+    detectors = list(dict.fromkeys(each.detector for each in chosen))
+    image, seed = survey_image(context.dataset.images), context.protocol.seed
+    return reach_keypoints(
+        context.methods, preset, image, detectors, count, seed=seed, progress=tell.reached
+    )
+
+
+def _raceable(seen: Seen, evaluator: PairEvaluator, preset: Preset, *, surveyed: bool) -> Seen:
+    """The pairs to race on: those that a survey saw overlap, and that may have a reference."""
+    if surveyed:  # what there was no time to test overlaps, too
+        seen = replace(seen, overlapping=(*seen.overlapping, *seen.unseen), unseen=())
+    if not preset.chance_test:
+        return seen
+    lacking = evaluator.without_reference()
+    return replace(seen, referenced=tuple(p for p in seen.overlapping if p not in lacking))
+
+
+def _spread(dataset: Dataset, most: int, seed: int) -> Dataset:
+    """A dataset with a part of its pairs, spread over it, and the images that they need."""
+    pairs = spread_pairs(dataset.pairs, most, seed)
+    return replace(dataset, pairs=pairs, images=_used(dataset, pairs))
 
 
 def _used(dataset: Dataset, pairs: Sequence[Pair]) -> list[Image]:

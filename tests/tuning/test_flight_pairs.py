@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.tuning.flight_pairs import SurveyedFlight, leaves_pairs_open, survey_flight
+from tests.pipeline.test_survey import flight, made_up
+
+
+@pytest.fixture(scope="module")
+def strips(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two strips of three images, the second one flown back."""
+    folder = tmp_path_factory.mktemp("strips")
+    for image in flight():
+        assert cv2.imwrite(str(folder / image.name), image.read().bgr)
+    return folder
+
+
+def test_a_flight_gets_pairs_across_its_strips(strips: Path) -> None:
+    dataset = open_dataset(strips)
+    assert leaves_pairs_open(dataset)
+    assert [(p.image_1, p.image_2) for p in dataset.pairs][0] == ("0.png", "1.png")
+    found = survey_flight(dataset, 4, 0, lambda done, total: None)
+    assert found is not None
+    classes = found.classes_of(range(len(found.dataset.pairs)))
+    assert set(classes.tolist()) == {0, 1}
+    names = {name for pair in found.dataset.pairs for name in (pair.image_1, pair.image_2)}
+    assert names == {image.name for image in dataset.images}
+    assert dict(found.dataset.settings)["pairs"] == f"representative:{len(found.dataset.pairs)}"
+    assert "turned" in found.notes()[0]
+
+
+def test_pairs_that_somebody_chose_stay(strips: Path) -> None:
+    assert not leaves_pairs_open(open_dataset(strips, pairs="exhaustive"))
+    assert not leaves_pairs_open(open_dataset("synthetic"))
+    assert not leaves_pairs_open(replace(open_dataset(strips), source=None))
+
+
+def test_what_a_survey_warns_of(strips: Path) -> None:
+    survey = replace(made_up(), pairs=made_up().pairs[:1], unreadable=(("3", "broken"),))
+    found = survey_flight(open_dataset(strips), 4, 0, lambda done, total: None)
+    assert found is not None
+    notes = SurveyedFlight(found.dataset, survey, found.chosen).notes()
+    assert any("21 of 24 images overlap with no other: 2, 4, 5, ..." in note for note in notes)
+    assert any("1 of 24 images cannot be read: 3" in note for note in notes)
+    assert np.array_equal(survey.partners()[:3], [1, 1, 0])
