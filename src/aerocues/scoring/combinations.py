@@ -43,10 +43,8 @@ def has_reference(rows: pl.DataFrame) -> bool:
 
 
 def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
-    """The default where pairs have references; else by inliers beyond chance, or the thesis's."""
-    if has_reference(rows):
-        return score_preset_named("default")
-    return score_preset_named("inliers" if has_chance_test(rows) else "thesis")
+    """The preset ``default`` if inliers beyond chance were measured, else ``thesis``."""
+    return score_preset_named("default" if has_chance_test(rows) else "thesis")
 
 
 def decision_table(
@@ -125,7 +123,7 @@ def decision_table(
 def _with_reference(rows: pl.DataFrame) -> pl.DataFrame:
     if not has_reference(rows):
         raise ScoreError(
-            "no pair has a reference, which tells right matches; score by inliers (preset inliers)"
+            "no pair has a reference, which tells right matches; score by inliers (preset default)"
         )
     # A row of a pair with a reference lacks it where its measurement ended before the comparison.
     having = rows.filter(pl.col("reference") == REFERENCE).select("pair").unique()

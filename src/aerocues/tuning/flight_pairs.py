@@ -58,10 +58,9 @@ class SurveyedFlight:
                 f"the images fall into {chosen.components} groups that no pair joins: no "
                 "combination may make one model of them"
             )
-        alone = [
-            name for name, count in zip(survey.images, survey.partners(), strict=True) if not count
-        ]
         unreadable = [name for name, _ in survey.unreadable]
+        partners = dict(zip(survey.images, survey.partners().tolist(), strict=True))
+        alone = [name for name in survey.images if not partners[name] and name not in unreadable]
         for what, names in (
             ("overlap with no other", alone),
             ("cannot be read", unreadable),
