@@ -36,6 +36,7 @@ class Objective(StrEnum):
     """Values of ``--objective``."""
 
     BALANCED = "balanced"
+    EFFICIENCY = "efficiency"
     SPEED = "speed"
     ACCURACY = "accuracy"
     RECONSTRUCTION = "reconstruction"
