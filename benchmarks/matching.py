@@ -69,7 +69,7 @@ def _some(methods: Methods, name: str, picture: Any, count: int) -> Features:
     keypoints = detector.read(detector.call(picture))
     order = np.random.default_rng(0).permutation(len(keypoints))
     few = keypoints.take(order[: int(1.3 * count)])
-    found = descriptor.read(descriptor.call(picture, descriptor.prepare(few)))
+    found = descriptor.read(descriptor.call(picture, descriptor.prepare(few, picture)))
     if len(found) < count:
         raise SystemExit(f"{name} describes {len(found):,} keypoints only; give a larger --width")
     kept = np.random.default_rng(1).permutation(len(found))[:count]

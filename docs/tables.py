@@ -42,6 +42,14 @@ def detectors() -> Iterator[tuple[str, ...]]:
         yield f"`{row.name}`", _parameters(row.parameters), row.reference
 
 
+def biases() -> Iterator[tuple[str, ...]]:
+    """One row a detector that OpenCV shifts."""
+    yield "detector", "how OpenCV shifts its keypoints", "what puts them right"
+    for row in DETECTORS:
+        if row.bias:
+            yield f"`{row.name}`", row.bias, _parameters(row.unbiased)
+
+
 def descriptors() -> Iterator[tuple[str, ...]]:
     """One row a descriptor."""
     yield "descriptor", "elements", "parameters", "source"
@@ -251,7 +259,7 @@ def reconstructions() -> Iterator[tuple[str, ...]]:
 
 Table = Callable[[], Iterator[tuple[str, ...]]]
 TABLES: dict[str, tuple[Table, ...]] = {
-    "methods.md": (detectors, descriptors, norms_and_matchers, presets, compatibility),
+    "methods.md": (detectors, biases, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
     "metrics.md": (counts, metrics, reference, ground_truth, times),
     "reconstruction.md": (reconstruction_statuses, reconstructions),

@@ -71,7 +71,7 @@ def both(pair: Pair, dataset: Dataset, text: str) -> tuple[list[Keypoints], list
         cv2.setRNGSeed(0)
         before.append(detector.read(detector.call(image)))
         cv2.setRNGSeed(0)
-        after.append(descriptor.read(descriptor.call(image, descriptor.prepare(before[-1]))))
+        after.append(descriptor.read(descriptor.call(image, descriptor.prepare(before[-1], image))))
     return before, after
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -61,9 +62,10 @@ def detect(methods: Methods, name: str, image: NDArray[np.uint8], folder: Path) 
         return detector.read(detector.call(image))
     source, target = folder / "image.npy", folder / f"{name}.npz"
     np.save(source, image)
+    parameters = json.dumps(dict(methods.detectors[name].parameters))
     for _ in range(ATTEMPTS):
         done = subprocess.run(
-            [sys.executable, "-c", _ELSEWHERE, name, str(source), str(target)],
+            [sys.executable, "-c", _ELSEWHERE, name, parameters, str(source), str(target)],
             env={"PYTHONPATH": ":".join(filter(None, sys.path))},
             capture_output=True,
             check=False,
@@ -75,11 +77,12 @@ def detect(methods: Methods, name: str, image: NDArray[np.uint8], folder: Path) 
 
 
 _ELSEWHERE = """
-import sys, numpy
-from aerocues.methods.making import make_detector
-from aerocues.methods.registry import opencv_methods
-name, source, target = sys.argv[1:]
-detector = make_detector(opencv_methods(), name)
+import dataclasses, json, sys, numpy
+from aerocues.methods.detectors import DETECTORS
+from aerocues.methods.opencv import OpenCVDetector
+name, parameters, source, target = sys.argv[1:]
+row = next(row for row in DETECTORS if row.name == name)
+detector = OpenCVDetector(dataclasses.replace(row, parameters=json.loads(parameters)))
 found = detector.read(detector.call(numpy.load(source)))
 numpy.savez(target, **{field: getattr(found, field) for field in found.__dataclass_fields__})
 """

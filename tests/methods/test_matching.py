@@ -107,7 +107,7 @@ def described(methods: Methods) -> dict[str, tuple[Features, Features]]:
         both = []
         for image in shifted_pair(480, 360):
             points = strongest(detector.read(detector.call(image)), 500)
-            both.append(descriptor.read(descriptor.call(image, descriptor.prepare(points))))
+            both.append(descriptor.read(descriptor.call(image, descriptor.prepare(points, image))))
         found[name] = (both[0], both[1])
     return found
 

@@ -75,7 +75,7 @@ def test_describing_arrays_equals_describing_the_keypoints_of_opencv(methods: Me
     _, direct = native.detectAndCompute(image, None)
     stage = make_descriptor(methods, "SIFT")
     found = Keypoints.from_opencv(native.detect(image))
-    features = stage.read(stage.call(image, stage.prepare(found)))
+    features = stage.read(stage.call(image, stage.prepare(found, image)))
     np.testing.assert_array_equal(features.descriptors, direct)
 
 
@@ -91,14 +91,16 @@ def test_rows_belong_to_the_keypoints_that_compute_returned(
     image = textured(640, 400)
     found = strongest(found_in(image, detector, methods), 400)
     stage = make_descriptor(methods, descriptor)
-    features = stage.read(stage.call(image, stage.prepare(found)))
+    features = stage.read(stage.call(image, stage.prepare(found, image)))
     assert 0 < len(features) < len(found)
-    again = stage.read(stage.call(image, stage.prepare(features.keypoints)))
+    again = stage.read(stage.call(image, stage.prepare(features.keypoints, image)))
     assert len(again) == len(features)
     np.testing.assert_array_equal(again.keypoints.xy, features.keypoints.xy)
     np.testing.assert_array_equal(again.descriptors, features.descriptors)
     for which in np.linspace(0, len(features) - 1, 12).astype(int):
-        alone = stage.read(stage.call(image, stage.prepare(features.keypoints.take(which[None]))))
+        alone = stage.read(
+            stage.call(image, stage.prepare(features.keypoints.take(which[None]), image))
+        )
         np.testing.assert_array_equal(alone.descriptors[0], features.descriptors[which])
     # The list from before would have put other positions beside the same rows.
     assert not np.array_equal(found.xy[: len(features)], features.keypoints.xy)
@@ -108,7 +110,7 @@ def test_rows_belong_to_the_keypoints_that_compute_returned(
 def test_rows_that_are_not_finite_are_dropped_with_their_keypoints(methods: Methods) -> None:
     image = textured(640, 400)
     stage = make_descriptor(methods, "KAZE")
-    prepared = stage.prepare(strongest(found_in(image, "AKAZE", methods), 600))
+    prepared = stage.prepare(strongest(found_in(image, "AKAZE", methods), 600), image)
     native, rows = raw = stage.call(image, prepared)
     finite = np.isfinite(rows).all(axis=1)
     assert 0 < finite.sum() < len(rows)

@@ -123,7 +123,9 @@ def test_plug_ins_detect_describe_and_match(arena: Methods) -> None:
         matcher = make_matcher(arena, names.matcher, names.norm)
         first, second = (
             descriptor.read(
-                descriptor.call(image, descriptor.prepare(detector.read(detector.call(image))))
+                descriptor.call(
+                    image, descriptor.prepare(detector.read(detector.call(image)), image)
+                )
             )
             for image in images
         )
@@ -307,13 +309,13 @@ def test_a_detector_that_returns_nonsense_is_caught(result: object) -> None:
 def test_a_descriptor_that_returns_nonsense_is_caught(result: object) -> None:
     stage = ArrayDescriptor(Returns(result), "float32")
     with pytest.raises(TypeError):
-        stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+        stage.read(stage.call(IMAGE, stage.prepare(THREE, IMAGE)))
 
 
 def test_descriptors_that_are_not_finite_are_dropped() -> None:
     rows = np.array([[1, 2], [np.nan, 1], [3, np.inf]], np.float32)
     stage = ArrayDescriptor(Returns(Features(THREE, rows)), "float32")
-    features = stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+    features = stage.read(stage.call(IMAGE, stage.prepare(THREE, IMAGE)))
     assert features.descriptors.tolist() == [[1, 2]]
     assert features.keypoints.xy.tolist() == [[0, 1]]
 
@@ -321,7 +323,7 @@ def test_descriptors_that_are_not_finite_are_dropped() -> None:
 def test_descriptors_are_made_contiguous_as_opencv_needs_them() -> None:
     rows = np.zeros((3, 40), np.uint8)[:, :32]
     stage = ArrayDescriptor(Returns(Features(THREE, rows)), "uint8")
-    features = stage.read(stage.call(IMAGE, stage.prepare(THREE)))
+    features = stage.read(stage.call(IMAGE, stage.prepare(THREE, IMAGE)))
     assert features.descriptors.flags.c_contiguous
 
 

@@ -27,7 +27,9 @@ def test_every_preset_fits_the_methods(methods: Methods) -> None:
 
 
 def test_a_preset_changes_what_it_names_and_nothing_else(methods: Methods) -> None:
-    preset = Preset("x", "x", True, {"ORB": {"nfeatures": 7}}, {"LATCH": {"bytes": 32}})
+    preset = Preset(
+        "x", "x", True, {"ORB": {"nfeatures": 7}}, {"LATCH": {"bytes": 32}}, unbiased=False
+    )
     changed = methods.with_preset(preset)
     assert changed.detectors["ORB"].parameters["nfeatures"] == 7
     assert changed.detectors["ORB"].parameters["nlevels"] == 6

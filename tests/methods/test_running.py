@@ -37,7 +37,7 @@ class Scene:
     def describe(self, methods: Methods, descriptor: str) -> list[Features]:
         stage = make_descriptor(methods, descriptor)
         return [
-            stage.read(stage.call(image, stage.prepare(keypoints)))
+            stage.read(stage.call(image, stage.prepare(keypoints, image)))
             for image, keypoints in zip(self.images, self.keypoints, strict=True)
         ]
 
@@ -134,7 +134,7 @@ def test_lucid_cannot_describe_a_gray_image(methods: Methods, scene_of: MakeScen
     stage, scene = make_descriptor(methods, "LUCID"), scene_of("FAST")
     gray = cv2.cvtColor(scene.images[0], cv2.COLOR_BGR2GRAY)
     with pytest.raises(cv2.error):
-        stage.call(gray, stage.prepare(scene.keypoints[0]))
+        stage.call(gray, stage.prepare(scene.keypoints[0], gray))
 
 
 @pytest.mark.opencv_versions
@@ -145,4 +145,4 @@ def test_akaze_refuses_deep_kaze_keypoints_of_small_images(methods: Methods) -> 
     deepest = replace(found, class_id=np.full(len(found), 14, np.int32))
     stage = make_descriptor(methods, "AKAZE")
     with pytest.raises(cv2.error):
-        stage.call(image, stage.prepare(deepest))
+        stage.call(image, stage.prepare(deepest, image))

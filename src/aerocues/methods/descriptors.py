@@ -11,6 +11,7 @@ from aerocues.methods.parameters import OPENCV, Value
 
 DescriptorType = Literal["uint8", "float32"]
 _OF_DETECTOR = {row.name: row.parameters for row in DETECTORS}
+_UNBIASED = {row.name: row.unbiased for row in DETECTORS}
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,7 @@ class DescriptorRow:
 
     Parameters
     ----------
-    name, factory, parameters, reference, origin, unavailable
+    name, factory, parameters, reference, unbiased, origin, unavailable
         As for a detector.
     dtype : {"uint8", "float32"}
         Type of the descriptor's elements.
@@ -46,6 +47,7 @@ class DescriptorRow:
     only_detectors: tuple[str, ...] = ()
     not_detectors: Mapping[str, str] = field(default_factory=dict)
     needs_colour: bool = False
+    unbiased: Mapping[str, Value] = field(default_factory=dict)
     origin: str = OPENCV
     unavailable: str | None = None
 
@@ -66,6 +68,7 @@ DESCRIPTORS: tuple[DescriptorRow, ...] = (
         not_detectors={
             "MSD": "MSD's octaves are deeper than the SIFT descriptor's pyramid (OpenCV asserts)"
         },
+        unbiased=_UNBIASED["SIFT"],
     ),
     DescriptorRow(
         "AKAZE",
@@ -89,6 +92,7 @@ DESCRIPTORS: tuple[DescriptorRow, ...] = (
             "SIFT": "the ORB descriptor reads SIFT's packed octave as a pyramid level and "
             "would ask for about 72 GB"
         },
+        unbiased=_UNBIASED["ORB"],
     ),
     DescriptorRow(
         "BRISK",

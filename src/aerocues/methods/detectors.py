@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from aerocues.methods.parameters import OPENCV, Value
+from aerocues.methods.positions import EXACT_POSITIONS, GRAY_INPUT
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,11 @@ class DetectorRow:
         The parameter that the strength of a keypoint must exceed, and the least value that still
         makes sense: below it noise and compression give keypoints. It is lowered where a number of
         keypoints is to be reached.
+    bias : str
+        How it shifts keypoints as OpenCV has it; empty: not at all. Measured with images that are
+        turned by 90 and 180 degrees or mirrored.
+    unbiased : mapping
+        Parameters besides that put keypoints where they really are, under presets that ask for it.
     origin : str
         ``opencv`` or the name of the distribution that brings it.
     unavailable : str or None
@@ -50,9 +56,13 @@ class DetectorRow:
     unstable: bool = False
     limit: str | None = None
     threshold: tuple[str, float] | None = None
+    bias: str = ""
+    unbiased: Mapping[str, Value] = field(default_factory=dict)
     origin: str = OPENCV
     unavailable: str | None = None
 
+
+_EXACT: Mapping[str, Value] = {EXACT_POSITIONS: True}
 
 DETECTORS: tuple[DetectorRow, ...] = (
     DetectorRow(
@@ -70,6 +80,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         0.25,
         limit="nfeatures",
         threshold=("contrastThreshold", 0.0025),
+        bias="0.25 px right and down",
+        unbiased={"enable_precise_upscale": True},
     ),
     DetectorRow(
         "AKAZE",
@@ -88,6 +100,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         3_500,
         0.15,
         threshold=("threshold", 3e-05),
+        bias="up to 1 px on all levels but the first, where sizes are odd",
+        unbiased=_EXACT,
     ),
     DetectorRow(
         "ORB",
@@ -108,6 +122,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         0.04,
         limit="nfeatures",
         threshold=("fastThreshold", 4),
+        bias="up to 1.3 px on all levels but the first",
+        unbiased=_EXACT,
     ),
     DetectorRow(
         "BRISK",
@@ -117,6 +133,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         12_000,
         0.3,
         threshold=("thresh", 6),
+        bias="up to 1 px on all levels but the first; with the correction up to 0.15 px",
+        unbiased=_EXACT,
     ),
     DetectorRow(
         "KAZE",
@@ -236,6 +254,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         3.0,
         limit="maxCorners",
         threshold=("corn_thresh", 0.0001),
+        bias="0.5 px right and down; of colour images it sees the left third, three times as wide",
+        unbiased={**_EXACT, GRAY_INPUT: True},
     ),
     DetectorRow(
         "MSD",
@@ -255,6 +275,8 @@ DETECTORS: tuple[DetectorRow, ...] = (
         5_000,
         4.0,
         threshold=("m_th_saliency", 10.0),
+        bias="0.5 px right and down on the finest level, up to 1 px on the others",
+        unbiased=_EXACT,
     ),
     DetectorRow(
         "TBMR",
@@ -264,5 +286,7 @@ DETECTORS: tuple[DetectorRow, ...] = (
         7_000,
         0.5,
         unstable=True,
+        bias="the second level at 0.64 of its x and y",
+        unbiased=_EXACT,
     ),
 )

@@ -15,11 +15,13 @@ from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,
     FlannMatcher,
+    LevelDescriptor,
     OpenCVDescriptor,
     OpenCVDetector,
 )
 from aerocues.methods.parameters import OPENCV, Value
 from aerocues.methods.plugins import load_factory
+from aerocues.methods.positions import EXACT_POSITIONS
 from aerocues.methods.registry import Methods
 
 
@@ -33,7 +35,7 @@ class DetectorStage(Protocol):
 class DescriptorStage(Protocol):
     """A descriptor whose ``call`` is timed apart from the conversions around it."""
 
-    def prepare(self, keypoints: Keypoints) -> Any: ...
+    def prepare(self, keypoints: Keypoints, image: NDArray[np.uint8]) -> Any: ...
     def call(self, image: NDArray[np.uint8], prepared: Any) -> Any: ...
     def read(self, raw: Any) -> Features: ...
 
@@ -90,7 +92,7 @@ class ArrayDescriptor:
         self._native = native
         self._dtype = dtype
 
-    def prepare(self, keypoints: Keypoints) -> Any:
+    def prepare(self, keypoints: Keypoints, image: NDArray[np.uint8]) -> Any:
         return keypoints
 
     def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
@@ -152,7 +154,7 @@ def make_descriptor(methods: Methods, name: str, detector: str = "") -> Descript
     """
     row = methods.descriptor_on(name, detector)
     if row.origin == OPENCV:
-        return OpenCVDescriptor(row)
+        return (LevelDescriptor if row.parameters.get(EXACT_POSITIONS) else OpenCVDescriptor)(row)
     return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)
 
 

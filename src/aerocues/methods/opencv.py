@@ -7,6 +7,7 @@ call that is timed, ``read`` turns its result into arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import Any
 
@@ -15,37 +16,63 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import MethodUnavailableError
-from aerocues.methods.arrays import Features, Keypoints, Matches, finite_features
+from aerocues.methods.arrays import Features, Int32Array, Keypoints, Matches, finite_features
 from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.matchers import NormRow
 from aerocues.methods.parameters import Value, create_opencv
+from aerocues.methods.positions import (
+    EXACT_POSITIONS,
+    GRAY_INPUT,
+    OWN_PARAMETERS,
+    PYRAMIDS,
+    Size,
+)
 
 SEARCH_PARAMETERS = ("checks", "eps", "sorted", "explore_all_trees")
 
 
+def _create(row: DetectorRow | DescriptorRow) -> Any:
+    """OpenCV's object of a row, made with the parameters that OpenCV knows."""
+    known = {name: value for name, value in row.parameters.items() if name not in OWN_PARAMETERS}
+    return create_opencv(row.factory, known)
+
+
+def _size(image: NDArray[np.uint8]) -> Size:
+    return image.shape[1], image.shape[0]
+
+
 class OpenCVDetector:
-    """A detector of OpenCV."""
+    """A detector of OpenCV; its keypoints are put where they really are, if its row asks that."""
 
     def __init__(self, row: DetectorRow) -> None:
-        self._native = create_opencv(row.factory, row.parameters)
+        self._native = _create(row)
+        self._parameters = row.parameters
+        self._gray = bool(row.parameters.get(GRAY_INPUT))
+        self._pyramid = PYRAMIDS[row.factory] if row.parameters.get(EXACT_POSITIONS) else None
 
     def call(self, image: NDArray[np.uint8]) -> Any:
-        return self._native.detect(image)
+        if self._gray and image.ndim == 3:
+            image = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), np.uint8)
+        return self._native.detect(image), _size(image)
 
     def read(self, raw: Any) -> Keypoints:
-        return Keypoints.from_opencv(raw)
+        native, size = raw
+        found = Keypoints.from_opencv(native)
+        if self._pyramid is None or not len(found):
+            return found
+        return self._pyramid.exact(found, size, self._parameters)
 
 
 class OpenCVDescriptor:
     """A descriptor of OpenCV."""
 
     def __init__(self, row: DescriptorRow) -> None:
-        self._native = create_opencv(row.factory, row.parameters)
+        self._native = _create(row)
         self._dtype = np.dtype(row.dtype)
         self._columns = row.columns
 
-    def prepare(self, keypoints: Keypoints) -> Any:
+    def prepare(self, keypoints: Keypoints, image: NDArray[np.uint8]) -> Any:
         return keypoints.to_opencv()
 
     def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
@@ -60,6 +87,34 @@ class OpenCVDescriptor:
         if descriptors is None or not len(native):
             return Features(Keypoints.from_opencv(()), np.empty((0, self._columns), self._dtype))
         return finite_features(Keypoints.from_opencv(native), descriptors)
+
+
+class LevelDescriptor(OpenCVDescriptor):
+    """A descriptor of OpenCV that looks for keypoints on levels of a pyramid, at a wrong place.
+
+    It is told other positions, with which it looks at the right one; ``class_id``, which it does
+    not read, carries the number of the keypoint.
+    """
+
+    def __init__(self, row: DescriptorRow) -> None:
+        super().__init__(row)
+        self._pyramid = PYRAMIDS[row.factory]
+        self._parameters = row.parameters
+
+    def prepare(self, keypoints: Keypoints, image: NDArray[np.uint8]) -> Any:
+        told = self._pyramid.as_found(keypoints, _size(image), self._parameters)
+        numbered = replace(told, class_id=np.arange(len(told), dtype=np.int32))
+        return keypoints, super().prepare(numbered, image)
+
+    def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
+        keypoints, told = prepared
+        return keypoints, super().call(image, told)
+
+    def read(self, raw: Any) -> Features:
+        keypoints, described = raw
+        features = super().read(described)
+        numbers: Int32Array = features.keypoints.class_id
+        return Features(keypoints.take(numbers), features.descriptors)
 
 
 class BruteForceMatcher:

@@ -14,7 +14,7 @@ from aerocues.json_files import read_json
 from aerocues.methods.presets import Preset, preset_named, preset_names
 
 _GROUPS = ("detectors", "descriptors", "on_detectors")
-_KNOWN = ("name", "title", "chance_test", *_GROUPS, "thresholds", "made")
+_KNOWN = ("name", "title", "chance_test", *_GROUPS, "thresholds", "unbiased", "made")
 
 
 def read_preset(path: Path) -> Preset:
@@ -80,11 +80,14 @@ def _assembled(content: Mapping[str, Any], where: str) -> Preset:
         chance_test=bool(content.get("chance_test", True)),
         **groups,
         thresholds={both: float(value) for both, value in thresholds.items()},
+        unbiased=bool(content.get("unbiased", True)),
     )
 
 
 def recorded_preset(settings: Mapping[str, Any]) -> Preset:
-    """The preset that a run recorded: one of those known here, or its parts.
+    """The preset that a run recorded: its parts as they were then, else one of those known here.
+
+    Runs that do not tell whether keypoints were put where they really are did not do so.
 
     Raises
     ------
@@ -92,7 +95,9 @@ def recorded_preset(settings: Mapping[str, Any]) -> Preset:
         If it is not known.
     """
     parts = settings.get("preset_parts")
-    return preset_of(parts, "run.json") if parts else preset_named(str(settings["preset"]))
+    if parts:
+        return _assembled({"unbiased": False, **parts}, "run.json")
+    return preset_named(str(settings["preset"]))
 
 
 def place_for_preset(path: Path) -> None:

@@ -20,6 +20,10 @@ class Tunable(Protocol):
     def parameters(self) -> Mapping[str, Value]:
         """By name, with the values of the table."""
 
+    @property
+    def unbiased(self) -> Mapping[str, Value]:
+        """Those besides that put keypoints where they really are."""
+
 
 @dataclass(frozen=True)
 class Preset:
@@ -37,6 +41,8 @@ class Preset:
         mean different things.
     thresholds : mapping of "DETECTOR-DESCRIPTOR" to float
         Inlier thresholds in pixels that differ from the protocol's.
+    unbiased : bool
+        Whether keypoints are put where they really are, where OpenCV shifts them.
     """
 
     name: str
@@ -46,6 +52,11 @@ class Preset:
     descriptors: Overrides = field(default_factory=dict)
     on_detectors: Overrides = field(default_factory=dict)
     thresholds: Mapping[str, float] = field(default_factory=dict)
+    unbiased: bool = True
+
+    def parameters_of(self, row: Tunable, changed: Mapping[str, Value]) -> dict[str, Value]:
+        """The parameters of a method: those of its table, and what this preset changes of them."""
+        return {**row.parameters, **(row.unbiased if self.unbiased else {}), **changed}
 
     def check(self, detectors: Mapping[str, Tunable], descriptors: Mapping[str, Tunable]) -> None:
         """Raise SelectionError if a method or a parameter is named that does not exist."""
@@ -66,7 +77,7 @@ class Preset:
                 f"preset {self.name} sets parameters of the {kind} {name}, which does "
                 "not exist; see 'aerocues methods'"
             )
-        own = known[name].parameters
+        own = {**known[name].parameters, **known[name].unbiased}
         for parameter in parameters:
             if parameter not in own:
                 raise SelectionError(
@@ -77,7 +88,7 @@ class Preset:
 
 METHOD_PRESETS: tuple[Preset, ...] = (
     Preset("default", "parameters of the thesis; a model must beat chance", chance_test=True),
-    Preset("thesis", "parameters and protocol of the thesis", chance_test=False),
+    Preset("thesis", "parameters and protocol of the thesis", chance_test=False, unbiased=False),
 )
 
 TUNED = "tuned"

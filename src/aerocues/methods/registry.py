@@ -92,12 +92,14 @@ class Methods:
         return replace(
             self,
             detectors={
-                name: replace(row, parameters={**row.parameters, **preset.detectors.get(name, {})})
+                name: replace(
+                    row, parameters=preset.parameters_of(row, preset.detectors.get(name, {}))
+                )
                 for name, row in self.detectors.items()
             },
             descriptors={
                 name: replace(
-                    row, parameters={**row.parameters, **preset.descriptors.get(name, {})}
+                    row, parameters=preset.parameters_of(row, preset.descriptors.get(name, {}))
                 )
                 for name, row in self.descriptors.items()
             },

@@ -169,14 +169,13 @@ class FeatureExtractor:
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage
     ) -> Described:
         """Describe the keypoints of an image; StageError where that fails."""
-        kind = type(descriptor)
+        kind, bgr = type(descriptor), image.pixels.bgr
         if kind not in image.prepared:
-            image.prepared[kind] = run_stage(what, lambda: descriptor.prepare(image.keypoints))
+            image.prepared[kind] = run_stage(what, lambda: descriptor.prepare(image.keypoints, bgr))
         prepared = image.prepared[kind]
-        bgr = image.pixels.bgr
         if ("descriptor", name) not in self._warm and len(image.keypoints):
             self._warm.add(("descriptor", name))
-            few = descriptor.prepare(image.keypoints.take(np.arange(1)))
+            few = descriptor.prepare(image.keypoints.take(np.arange(1)), bgr)
             warm_up(lambda: descriptor.call(bgr, few))
         raw, time = run_stage(
             what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
