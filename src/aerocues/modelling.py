@@ -38,6 +38,7 @@ def reconstruct(
     intrinsics: Intrinsics = "calibrated",
     focal_length: float | None = None,
     mapper: Mapper = "incremental",
+    refine_keypoints: bool | None = None,
     reference: str | Combination | None = None,
     baseline: bool = True,
     colours: bool = True,
@@ -82,6 +83,9 @@ def reconstruct(
         Pixels, in place of what EXIF tells.
     mapper : {"incremental", "global"}
         Of COLMAP.
+    refine_keypoints : bool, optional
+        Whether keypoints of tracks are refined by least-squares matching before COLMAP gets them;
+        by default they are, but with the preset ``"thesis"``.
     reference : str or Combination, optional
         To whose cloud distances are measured; the best model by default.
     baseline : bool
@@ -127,6 +131,7 @@ def reconstruct(
     options = ReconstructionOptions(
         preset=preset or preset_of_results(measured),
         protocol=ReconstructionProtocol(seed, max_keypoints, intrinsics, focal_length, mapper),
+        refine_keypoints=refine_keypoints,
         wanted=Wanted(colours, undistort),
         reference=None if reference is None else str(reference),
         features=features or features_of_results(measured),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import cv2
 import numpy as np
@@ -39,17 +41,19 @@ VIEWS = (
 def texture() -> NDArray[np.uint8]:
     random = np.random.default_rng(0)
     smooth = cv2.GaussianBlur(random.normal(0, 1, (600, 700)), (0, 0), 1.5)
-    return np.clip(400 * np.asarray(smooth) + 128, 0, 255).astype(np.uint8)
+    gray: NDArray[np.uint8] = np.clip(400 * np.asarray(smooth) + 128, 0, 255).astype(np.uint8)
+    return gray
 
 
 @cache
 def view(number: int, gain: float = 1.0, bias: float = 0.0) -> NDArray[np.uint8]:
     flags = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
     seen = np.asarray(cv2.warpPerspective(texture(), VIEWS[number], SIZE, flags=flags))
-    return np.clip(gain * seen.astype(np.float64) + bias, 0, 255).astype(np.uint8)
+    changed: NDArray[np.uint8] = np.clip(gain * seen + bias, 0, 255).astype(np.uint8)
+    return changed
 
 
-def through(matrix: Floats, points: Floats) -> Floats:
+def through(matrix: Any, points: Any) -> Floats:
     mapped = np.column_stack([points, np.ones(len(points))]) @ matrix.T
     return np.asarray(mapped[:, :2] / mapped[:, 2:])
 
@@ -62,7 +66,7 @@ class Scene:
     found: list[Float32Array]
     pairs: dict[tuple[int, int], Matches]
 
-    def errors(self, xy: list[Float32Array]) -> Floats:
+    def errors(self, xy: Sequence[NDArray[Any]]) -> Floats:
         """How far the points of two views are apart in the texture, in pixels."""
         there = [through(matrix, each) for matrix, each in zip(VIEWS, xy, strict=True)]
         apart = [np.linalg.norm(each - there[0], axis=1) for each in there[1:]]

@@ -61,6 +61,7 @@ def _figures(row: Mapping[str, Any], located: bool) -> list[str]:
         cells += [_number(row["placed_images"], "d"), _number(row["position_rmse"], ".1f")]
     cells += [_number(row[name], ",.1f") for name in ("feature_seconds", "matching_seconds")]
     modelling = [row[name] for name in ("verification_seconds", "mapping_seconds")]
+    modelling += [] if row["refinement_seconds"] is None else [row["refinement_seconds"]]
     return [*cells, _number(None if None in modelling else sum(modelling), ",.1f")]
 
 

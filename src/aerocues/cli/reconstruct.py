@@ -87,6 +87,13 @@ def reconstruct(
         typer.Option(metavar="PIXELS", help="Focal length, in place of the one in EXIF."),
     ] = None,
     mapper: Annotated[Mapper, typer.Option(help="COLMAP mapper.")] = Mapper.INCREMENTAL,
+    refine_keypoints: Annotated[
+        bool | None,
+        typer.Option(
+            "--refine-keypoints/--no-refine-keypoints",
+            help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
+        ),
+    ] = None,
     reference: Annotated[
         str | None,
         typer.Option(
@@ -156,6 +163,7 @@ def reconstruct(
                 intrinsics=intrinsics.value,
                 focal_length=focal_length,
                 mapper=mapper.value,
+                refine_keypoints=refine_keypoints,
                 reference=reference,
                 baseline=baseline,
                 colours=colours,

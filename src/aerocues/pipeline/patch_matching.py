@@ -174,9 +174,9 @@ def match_patches(
     return shifts, likeness
 
 
-def as_gray(image: NDArray[np.uint8], blur: float) -> Any:
+def as_gray(image: NDArray[np.uint8], blur: float) -> Gray:
     """Slightly blurred gray values of a BGR or gray image, (H, W) float32."""
     import cv2
 
-    gray = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
-    return cv2.GaussianBlur(gray.astype(np.float32), (0, 0), blur)
+    gray: Any = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+    return np.asarray(cv2.GaussianBlur(gray.astype(np.float32), (0, 0), blur), np.float32)

@@ -65,6 +65,42 @@ class ChanceTest:
 
 
 @dataclass(frozen=True)
+class Refinement:
+    """How observations of tracks are refined.
+
+    Parameters
+    ----------
+    half_window, sigma : int, float
+        Pixels around a keypoint that are compared, and the sigma of their weights.
+    blur : float
+        Sigma of the blur of the images, in pixels.
+    steps : int
+        Gauss-Newton steps of an observation at most.
+    likeness : float
+        Zero-mean normalised cross-correlation that an observation needs to be accepted.
+    farthest : float
+        Pixels of the features' images that it may be moved at most.
+    recovery : float
+        Pixels that it may be moved where it was rejected at first and starts again where its
+        neighbours are sure it lies.
+    neighbours : int
+        Tracks around it that tell how the patch is warped.
+    """
+
+    half_window: int = 8
+    sigma: float = 4.0
+    blur: float = 0.5
+    steps: int = 15
+    likeness: float = 0.8
+    farthest: float = 4.0
+    recovery: float = 2.0
+    neighbours: int = 12
+
+
+REFINEMENT = Refinement()
+
+
+@dataclass(frozen=True)
 class MeasurementProtocol:
     """How combinations are measured; recorded with every result.
 

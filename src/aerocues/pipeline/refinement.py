@@ -12,45 +12,13 @@ from scipy.spatial import cKDTree
 from aerocues.methods.arrays import Float32Array, Matches
 from aerocues.pipeline.local_motion import homography_of, jacobians, local_motion
 from aerocues.pipeline.patch_matching import gaussian_weights, match_patches
+from aerocues.pipeline.protocol import REFINEMENT, Refinement
 from aerocues.pipeline.tracks import Ints, Tracks, tracks_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 GrayImages = Callable[[int], Float32Array]
 """From the number of an image to its slightly blurred gray values, (H, W) float32."""
-
-
-@dataclass(frozen=True)
-class Refinement:
-    """How observations of tracks are refined.
-
-    Parameters
-    ----------
-    half_window, sigma : int, float
-        Pixels around a keypoint that are compared, and the sigma of their weights.
-    blur : float
-        Sigma of the blur of the images, in pixels.
-    steps : int
-        Gauss-Newton steps of an observation at most.
-    likeness : float
-        Zero-mean normalised cross-correlation that an observation needs to be accepted.
-    farthest : float
-        Pixels of the features' images that it may be moved at most.
-    recovery : float
-        Pixels that it may be moved where it was rejected at first and starts again where its
-        neighbours are sure it lies.
-    neighbours : int
-        Tracks around it that tell how the patch is warped.
-    """
-
-    half_window: int = 8
-    sigma: float = 4.0
-    blur: float = 0.5
-    steps: int = 15
-    likeness: float = 0.8
-    farthest: float = 4.0
-    recovery: float = 2.0
-    neighbours: int = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +56,7 @@ def refine_tracks(
     images: GrayImages,
     keypoints: Sequence[Float32Array],
     pairs: Mapping[tuple[int, int], Matches],
-    refinement: Refinement = Refinement(),
+    refinement: Refinement = REFINEMENT,
     scale: float = 1.0,
 ) -> RefinedKeypoints:
     """Refine keypoints by least-squares matching with the reference of their track.

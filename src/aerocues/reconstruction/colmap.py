@@ -70,6 +70,15 @@ def require(name: str, purpose: str) -> Any:
     return found
 
 
+def image_pair(pair_id: Any) -> tuple[int, int]:
+    """COLMAP's IDs of the two images of a pair."""
+    import pycolmap
+
+    owner: Any = pycolmap if hasattr(pycolmap, "pair_id_to_image_pair") else pycolmap.Database
+    first, second = owner.pair_id_to_image_pair(pair_id)
+    return int(first), int(second)
+
+
 def registered(model: Any) -> list[Any]:
     """The registered images of a model, by name."""
     images = [image for image in model.images.values() if image.has_pose]

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import Outcome, without_features, without_links
 from aerocues.reconstruction.mapping import map_scene
-from aerocues.reconstruction.matched_scene import MatchedScene, read_matched_scene
+from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.matching import SceneMatcher
-from aerocues.reconstruction.one_model import DATABASE, MAPPING, Linked, ModelMaker
+from aerocues.reconstruction.one_model import (
+    DATABASE,
+    MAPPING,
+    OPTIONAL_STAGE,
+    Linked,
+    ModelMaker,
+)
+from aerocues.reconstruction.precision import keypoint_error
+from aerocues.reconstruction.refining import Inliers, refine_scene, refinement_figures
 from aerocues.reconstruction.verification import linked_pairs, verify
 
 MATCHES = "matches.npz"
@@ -22,7 +31,12 @@ class CombinationModel(ModelMaker):
         matched = self._matched()
         if failure := without_features({n: len(k) for n, k in matched.keypoints.items()}):
             return failure
-        linked = self.timed("verification", lambda: self._verify(matched))
+        pairs = self.timed(
+            "verification", lambda: linked_pairs(matched, self.scene, self.combination)
+        )
+        self.row["linked_pairs"] = len(pairs)
+        matched = self._refined(matched, pairs)
+        linked = self.timed("verification", lambda: self._verify(matched, pairs))
         self.row.update(
             verified_pairs=len(linked.inliers),
             verified_matches=sum(linked.inliers.values(), start=0),
@@ -36,11 +50,14 @@ class CombinationModel(ModelMaker):
         return failure or linked
 
     def map(self) -> list[Any]:
+        database, protocol = self.folder / DATABASE, self.scene.protocol
+        largest_error = None
+        if protocol.error_limit is not None:
+            error = keypoint_error(database)
+            largest_error = protocol.error_limit.pixels(error)
+            self.row.update(keypoint_error=error, error_limit=largest_error)
         return map_scene(
-            self.folder / DATABASE,
-            self.scene.images,
-            self.folder / MAPPING,
-            self.scene.protocol,
+            database, self.scene.images, self.folder / MAPPING, protocol, largest_error
         )
 
     def _matched(self) -> MatchedScene:
@@ -59,12 +76,22 @@ class CombinationModel(ModelMaker):
         )
         return matched
 
-    def _verify(self, matched: MatchedScene) -> Linked:
-        linked = linked_pairs(matched, self.scene, self.combination)
-        self.row["linked_pairs"] = len(linked)
+    def _refined(self, matched: MatchedScene, pairs: Mapping[Names, Inliers]) -> MatchedScene:
+        """The scene with sharper keypoints, where they are asked for."""
+        refinement = self.scene.protocol.refinement
+        if refinement is None:
+            return matched
+        dataset = self.scene.dataset
+        sharper, found = self.timed(
+            OPTIONAL_STAGE, lambda: refine_scene(dataset, matched, pairs, refinement)
+        )
+        self.row.update(refinement_figures(found))
+        return sharper
+
+    def _verify(self, matched: MatchedScene, pairs: Iterable[Names]) -> Linked:
         database = self.folder / DATABASE
-        numbers = write_database(database, self.scene, matched, linked)
-        if not linked:
+        numbers = write_database(database, self.scene, matched, pairs)
+        if not pairs:
             return Linked({}, numbers)
-        verify(database, linked, self.scene, self.combination)
+        verify(database, pairs, self.scene, self.combination)
         return Linked(verified_inliers(database, numbers), numbers)

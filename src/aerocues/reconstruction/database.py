@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.reconstruction.colmap import open_database
+from aerocues.reconstruction.colmap import image_pair, open_database
 from aerocues.reconstruction.images import HALF_PIXEL
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.scene import Scene
 
 
 def write_database(
-    file: Path, scene: Scene, matched: MatchedScene, linked: list[Names]
+    file: Path, scene: Scene, matched: MatchedScene, linked: Iterable[Names]
 ) -> dict[str, int]:
     """Create the database: cameras, images, keypoints, and the matches of linked pairs.
 
@@ -70,11 +70,7 @@ def _rows(keypoints: Any) -> NDArray[np.float32]:
 
 def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]:
     """Number of inliers of each verified pair of images."""
-    import pycolmap
-
     names = {number: name for name, number in numbers.items()}
-    owner: Any = pycolmap if hasattr(pycolmap, "pair_id_to_image_pair") else pycolmap.Database
-    split = owner.pair_id_to_image_pair
     database = open_database(file)
     try:
         pair_ids, geometries = database.read_two_view_geometries()
@@ -82,7 +78,7 @@ def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]
         database.close()
     found = {}
     for pair_id, geometry in zip(pair_ids, geometries, strict=True):
-        first, second = split(pair_id)
+        first, second = image_pair(pair_id)
         if len(geometry.inlier_matches):
             found[names[first], names[second]] = len(geometry.inlier_matches)
     return found

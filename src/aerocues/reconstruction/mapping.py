@@ -11,7 +11,11 @@ from aerocues.reconstruction.protocol import ReconstructionProtocol
 
 
 def map_scene(
-    database: Path, images: Path, folder: Path, protocol: ReconstructionProtocol
+    database: Path,
+    images: Path,
+    folder: Path,
+    protocol: ReconstructionProtocol,
+    largest_error: float | None = None,
 ) -> list[Any]:
     """All models of the mapper, sorted by number of images, then points, the largest first.
 
@@ -21,6 +25,8 @@ def map_scene(
     folder : path
         Temporary folder for the output of the mapper; it is removed again.
     protocol : ReconstructionProtocol
+    largest_error : float, optional
+        Pixels from its keypoint at which a point may be projected; COLMAP's own by default.
 
     Raises
     ------
@@ -33,7 +39,8 @@ def map_scene(
         mapper = require("global_mapping", '`mapper="global"`')
         options = _global_options(protocol)
     else:
-        mapper, options = pycolmap.incremental_mapping, _incremental_options(protocol)
+        mapper = pycolmap.incremental_mapping
+        options = _incremental_options(protocol, largest_error)
     return _mapped(mapper, (database, images, folder), options, protocol.seed)
 
 
@@ -74,7 +81,7 @@ def _repeatable_options(seed: int) -> Any:
     return options
 
 
-def _incremental_options(protocol: ReconstructionProtocol) -> Any:
+def _incremental_options(protocol: ReconstructionProtocol, largest_error: float | None) -> Any:
     refine, settings = protocol.refined, protocol.mapping
     options = _repeatable_options(protocol.seed)
     options.multiple_models = True
@@ -92,6 +99,10 @@ def _incremental_options(protocol: ReconstructionProtocol) -> Any:
             setattr(options, name, ratio)
     options.ba_global_max_refinements = settings.global_refinements
     options.ba_local_max_refinements = settings.local_refinements
+    if largest_error is not None:
+        options.mapper.filter_max_reproj_error = largest_error
+        options.triangulation.complete_max_reproj_error = largest_error
+        options.triangulation.merge_max_reproj_error = largest_error
     return options
 
 

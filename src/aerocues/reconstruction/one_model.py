@@ -25,6 +25,7 @@ DATABASE = "database.db"
 OUTCOME = "outcome.json"
 MAPPING = "mapping"
 STAGES = ("feature", "matching", "verification", "mapping")
+OPTIONAL_STAGE = "refinement"
 
 
 @dataclass(frozen=True)
@@ -81,17 +82,19 @@ class ModelMaker(ABC):
             outcome = Outcome("error", f"{self._stage}: {type(error).__name__}: {text}")
         times = [self.row.get(f"{stage}_seconds") for stage in STAGES]
         if None not in times:
-            self.row["reconstruction_seconds"] = sum(times)
+            optional = self.row.get(f"{OPTIONAL_STAGE}_seconds", 0.0)
+            self.row["reconstruction_seconds"] = sum(times) + optional
         return {**self.row, "status": outcome.status, "message": outcome.message}
 
     def timed(self, stage: str, call: Callable[[], Result]) -> Result:
-        """Do a stage of the whole scene and note its CPU seconds."""
+        """Do a part of a stage of the whole scene and note its CPU seconds."""
         self._stage = stage
         images = f"{len(self.scene.dataset.images)} images"
         self.announce(stage_call(stage, self.combination, images))
         begun = time.process_time()
         found = call()
-        self.row[f"{stage}_seconds"] = time.process_time() - begun
+        seconds = f"{stage}_seconds"
+        self.row[seconds] = self.row.get(seconds, 0.0) + time.process_time() - begun
         return found
 
     def _remove_earlier(self) -> None:

@@ -23,6 +23,9 @@ class ReconstructionOptions:
     preset : str or Preset
         Preset of the parameters of methods; with ``thesis`` pairs need not beat chance.
     protocol : ReconstructionProtocol
+    refine_keypoints : bool or None
+        Whether keypoints of tracks are refined; None: unless the preset takes keypoints as OpenCV
+        gives them, as ``thesis`` does.
     wanted : Wanted
     reference : str or None
         Combination whose cloud is the reference of distances; by default the best model.
@@ -48,6 +51,7 @@ class ReconstructionOptions:
 
     preset: str | Preset = "default"
     protocol: ReconstructionProtocol = field(default_factory=ReconstructionProtocol)
+    refine_keypoints: bool | None = None
     wanted: Wanted = field(default_factory=Wanted)
     reference: str | None = None
     features: str | Path | None = None

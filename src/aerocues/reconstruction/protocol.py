@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from aerocues.arguments import check_choice, check_positive, check_whole
 from aerocues.defaults import FLIGHT_KEYPOINTS
-from aerocues.pipeline.protocol import ChanceTest, Verification
+from aerocues.pipeline.protocol import ChanceTest, Refinement, Verification
 
 Intrinsics = Literal["calibrated", "fixed", "refine"]
 Mapper = Literal["incremental", "global"]
@@ -62,6 +62,29 @@ class Mapping:
 
 
 @dataclass(frozen=True)
+class ErrorLimit:
+    """How far from its keypoint a point may be projected by the mapper; COLMAP allows 4 px to all.
+
+    Parameters
+    ----------
+    factor : float
+        By the measured error of a coordinate of the keypoints.
+    least, most : float
+        Pixels that are allowed in any case, and at most.
+    """
+
+    factor: float = 2.0
+    least: float = 1.0
+    most: float = 4.0
+
+    def pixels(self, keypoint_error: float | None) -> float:
+        """The limit for keypoints of this error, which is None where it is not known."""
+        if keypoint_error is None:
+            return self.most
+        return min(max(self.factor * keypoint_error, self.least), self.most)
+
+
+@dataclass(frozen=True)
 class ReconstructionProtocol:
     """How combinations are reconstructed; recorded with every model.
 
@@ -83,6 +106,10 @@ class ReconstructionProtocol:
         Pairs whose matches do not beat chance are not given to COLMAP. With thousands of keypoints,
         images without overlap have enough matches to pass COLMAP's own verification. Such pairs
         take most of the mapping time, and some of them displace cameras.
+    refinement : Refinement or None
+        How keypoints of tracks are refined before COLMAP gets them; None: not at all.
+    error_limit : ErrorLimit or None
+        None leaves the mapper its own.
     thresholds : mapping of str to float
         Inlier thresholds in pixels of "DETECTOR-DESCRIPTOR" from a preset, for the chance test and
         for COLMAP's verification.
@@ -100,6 +127,8 @@ class ReconstructionProtocol:
     mapper: Mapper = "incremental"
     verification: Verification = field(default_factory=Verification)
     chance: ChanceTest | None = field(default_factory=ChanceTest)
+    refinement: Refinement | None = field(default_factory=Refinement)
+    error_limit: ErrorLimit | None = field(default_factory=ErrorLimit)
     thresholds: abc.Mapping[str, float] = field(default_factory=dict)
     mapping: Mapping = Mapping()
     requirements: Requirements = Requirements()
@@ -129,6 +158,9 @@ class ReconstructionProtocol:
         settings = asdict(self)
         for name in ("thresholds", "intrinsics"):
             del settings[name]
+        for name in ("refinement", "error_limit"):
+            if settings[name] is None:
+                del settings[name]
         return {"version": RECONSTRUCTION_VERSION, "refined": self.refined, **settings}
 
     @property

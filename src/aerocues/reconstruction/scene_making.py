@@ -9,7 +9,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import as_preset
+from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select, split_names
 from aerocues.methods.strongest import limited
 from aerocues.pipeline.feature_folder import checked_folder
@@ -17,6 +17,7 @@ from aerocues.reconstruction.colmap import colmap_version
 from aerocues.reconstruction.engine import ReconstructionLimits, prepare_images
 from aerocues.reconstruction.images import cameras_of, read_prepared, write_prepared
 from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
 from aerocues.reconstruction.scene import FEATURES, Scene
 from aerocues.results.versions import machine_name, software_versions
@@ -40,7 +41,6 @@ def check_scene(dataset: Dataset) -> None:
 def scene_of(dataset: Dataset, output: Path, options: ReconstructionOptions) -> Scene:
     """The scene under the given options; its cameras are not known yet."""
     preset = as_preset(options.preset)
-    chance = options.protocol.chance if preset.chance_test else None
     unordered = {frozenset((pair.image_1, pair.image_2)): pair for pair in reversed(dataset.pairs)}
     once = [
         pair for pair in dataset.pairs if unordered[frozenset((pair.image_1, pair.image_2))] is pair
@@ -50,13 +50,25 @@ def scene_of(dataset: Dataset, output: Path, options: ReconstructionOptions) -> 
         dataset=dataset,
         methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
         preset=preset.name,
-        protocol=replace(options.protocol, chance=chance, thresholds=preset.thresholds),
+        protocol=_protocol(options, preset),
         folder=output.absolute(),
         features=_features_folder(output, options),
         machine=machine_name(),
         image_keys={image.name: image.source.content_key() for image in dataset.images},
         wanted=options.wanted,
         versions=(software_versions()["opencv"], colmap_version()),
+    )
+
+
+def _protocol(options: ReconstructionOptions, preset: Preset) -> ReconstructionProtocol:
+    """The protocol as the preset has it: that of the thesis leaves out what came later."""
+    given, refine = options.protocol, options.refine_keypoints
+    return replace(
+        given,
+        chance=given.chance if preset.chance_test else None,
+        refinement=given.refinement if (preset.unbiased if refine is None else refine) else None,
+        error_limit=given.error_limit if preset.unbiased else None,
+        thresholds=preset.thresholds,
     )
 
 

@@ -2,36 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
-from aerocues.pipeline.verification import Verifier
+from aerocues.pipeline.verification import Verdict, Verifier
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.scene import Scene
 
 
-def linked_pairs(matched: MatchedScene, scene: Scene, combination: Combination) -> list[Names]:
-    """The pairs whose matches beat chance; without a chance test, all pairs with enough matches."""
+def linked_pairs(
+    matched: MatchedScene, scene: Scene, combination: Combination
+) -> dict[Names, NDArray[np.bool_]]:
+    """The pairs whose matches beat chance, and which of them agree with the geometry, (M,) bool.
+
+    Without a chance test, all pairs with enough matches; and all matches where nobody needs to
+    know which agree.
+    """
     least = scene.protocol.verification.minimum_matches
     enough = [names for names, matches in matched.pairs.items() if len(matches) >= least]
-    if scene.protocol.chance is None:
-        return enough
+    if scene.protocol.chance is None and scene.protocol.refinement is None:
+        return {names: np.ones(len(matched.pairs[names]), bool) for names in enough}
     measurement = scene.measurement()
     measurement = measurement.with_threshold(measurement.threshold(combination))
     verifier = Verifier(measurement, "epipolar", Clock(measurement.seed))
-    return [names for names in enough if _beats_chance(verifier, matched, names)]
+    verdicts = {names: _verdict(verifier, matched, names) for names in enough}
+    return {
+        names: verdict.model.inliers
+        for names, verdict in verdicts.items()
+        if verdict.passed or scene.protocol.chance is None
+    }
 
 
-def _beats_chance(verifier: Verifier, matched: MatchedScene, names: Names) -> bool:
+def _verdict(verifier: Verifier, matched: MatchedScene, names: Names) -> Verdict:
     first, second = matched.points(names)
     order = np.argsort(matched.pairs[names].distance, kind="stable")
-    return verifier.verify(first, second, order).passed
+    return verifier.verify(first, second, order)
 
 
-def verify(database: Path, pairs: list[Names], scene: Scene, combination: Combination) -> None:
+def verify(database: Path, pairs: Iterable[Names], scene: Scene, combination: Combination) -> None:
     """Verify all pairs in the database, by essential or fundamental matrix and homography."""
     import pycolmap
 

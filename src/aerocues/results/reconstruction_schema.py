@@ -79,12 +79,30 @@ _MATCHES = (
     _count("matches", "matches of all pairs"),
     _count("verified_matches", "matches that agree with the geometry of a verified pair"),
 )
+_REFINEMENT = (
+    _number(
+        "refinable_share",
+        "ratio",
+        "observations of tracks that look like their reference within 4 px of their keypoint; "
+        "nearly the true share of matches, without ground truth",
+    ),
+    _number("refined_share", "ratio", "the same after a second look where neighbours point to"),
+    _number("refinement_shift", "px", "median distance by which refined keypoints were moved"),
+    _number(
+        "refinement_gain",
+        "ratio",
+        "median distance from where neighbours say a keypoint lies, before / after",
+    ),
+    _number("keypoint_error", "px", "error of a keypoint's coordinate, from verified matches"),
+    _number("error_limit", "px", "how far the mapper lets a point be from its keypoint"),
+)
 _TIMES = (
     _number("feature_seconds", "s", "CPU seconds to detect and describe in all images"),
     _number("matching_seconds", "s", "CPU seconds to match all pairs"),
     _number("verification_seconds", "s", "CPU seconds of the chance test and the verification"),
+    _number("refinement_seconds", "s", "CPU seconds to refine keypoints"),
     _number("mapping_seconds", "s", "CPU seconds of the mapper"),
-    _number("reconstruction_seconds", "s", "sum of the four: from images to a model"),
+    _number("reconstruction_seconds", "s", "sum of these: from images to a model"),
 )
 _TRUTH = (
     _number(
@@ -150,6 +168,7 @@ RECONSTRUCTIONS: tuple[Column, ...] = (
     *_OUTCOME,
     *_MODEL,
     *_MATCHES,
+    *_REFINEMENT,
     *_TIMES,
     *_TRUTH,
     *_CLOUD_DISTANCES,

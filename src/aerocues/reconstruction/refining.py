@@ -1,0 +1,121 @@
+"""Sharper keypoints of a scene, before COLMAP gets them."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.dataset import Dataset
+from aerocues.methods.arrays import Float32Array, Matches
+from aerocues.pipeline.patch_matching import as_gray
+from aerocues.pipeline.protocol import Refinement
+from aerocues.pipeline.refinement import RefinedKeypoints, refine_tracks
+from aerocues.reconstruction.matched_scene import MatchedScene, Names, PairMatches
+from aerocues.results.metrics import Row
+
+Inliers = NDArray[np.bool_]
+"""(M,) of the matches of a pair."""
+GRAY_BYTES = 512 * 2**20
+
+
+class GrayImages:
+    """Gray images by number; those used last are kept in memory, as many as fit.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    blur : float
+        Sigma in pixels.
+    most : int
+        Bytes that are kept.
+    """
+
+    def __init__(self, dataset: Dataset, blur: float, most: int = GRAY_BYTES) -> None:
+        self._dataset, self._blur, self._most = dataset, blur, most
+        self._kept: OrderedDict[int, Float32Array] = OrderedDict()
+
+    def __call__(self, number: int) -> Float32Array:
+        if number not in self._kept:
+            pixels = self._dataset.images[number].read()
+            self._kept[number] = as_gray(pixels.bgr, self._blur)
+        self._kept.move_to_end(number)
+        while len(self._kept) > 2 and self._bytes() > self._most:
+            self._kept.popitem(last=False)
+        return self._kept[number]
+
+    def _bytes(self) -> int:
+        return sum(image.nbytes for image in self._kept.values())
+
+
+def refine_scene(
+    dataset: Dataset, matched: MatchedScene, linked: Mapping[Names, Inliers], refinement: Refinement
+) -> tuple[MatchedScene, RefinedKeypoints]:
+    """A scene whose keypoints lie where their tracks look alike.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    matched : MatchedScene
+    linked : mapping of pairs to (M,) bool
+        Which matches of the pairs that beat chance agree with the geometry of the pair.
+    refinement : Refinement
+
+    Returns
+    -------
+    MatchedScene
+        With the matches of observations that look unlike the rest of their track left out.
+    RefinedKeypoints
+
+    Raises
+    ------
+    ImageError
+        If an image can no longer be read.
+    """
+    names = list(matched.keypoints)
+    number = {name: position for position, name in enumerate(names)}
+    pairs = {
+        (number[first], number[second]): _verified(matched.pairs[first, second], agree)
+        for (first, second), agree in linked.items()
+    }
+    found = refine_tracks(
+        GrayImages(dataset, refinement.blur),
+        [matched.keypoints[name].xy for name in names],
+        pairs,
+        refinement,
+    )
+    keypoints = {
+        name: replace(matched.keypoints[name], xy=xy)
+        for name, xy in zip(names, found.xy, strict=True)
+    }
+    rejected = dict(zip(names, found.rejected, strict=True))
+    kept = {
+        (first, second): _without(matches, rejected[first], rejected[second])
+        for (first, second), matches in matched.pairs.items()
+    }
+    return replace(matched, keypoints=keypoints, pairs=kept), found
+
+
+def refinement_figures(found: RefinedKeypoints) -> Row:
+    """What refining did, as columns of a model."""
+    observations, after = found.observations, found.disagreement
+    return {
+        "refinable_share": found.accepted_at_once / observations if observations else None,
+        "refined_share": found.accepted / observations if observations else None,
+        "refinement_shift": found.shift,
+        "refinement_gain": found.disagreement_before / after
+        if found.disagreement_before is not None and after
+        else None,
+    }
+
+
+def _verified(matches: PairMatches, agree: Inliers) -> Matches:
+    return Matches(matches.indices[agree], matches.distance[agree])
+
+
+def _without(matches: PairMatches, first: Inliers, second: Inliers) -> PairMatches:
+    keep = ~(first[matches.indices[:, 0]] | second[matches.indices[:, 1]])
+    return PairMatches(matches.indices[keep], matches.distance[keep])
