@@ -70,7 +70,7 @@ def test_figures_are_those_of_colmap(models: Models) -> None:
         assert row["pairs"] == 36
         assert row["verified_pairs"] <= row["linked_pairs"] <= 36
         assert 0 < row["verified_matches"] < row["matches"]
-        stages = ("feature", "matching", "verification", "mapping")
+        stages = ("feature", "matching", "verification", "refinement", "mapping")
         seconds = [row[f"{stage}_seconds"] for stage in stages]
         assert min(seconds) > 0
         assert row["reconstruction_seconds"] == pytest.approx(sum(seconds))

@@ -202,7 +202,8 @@ def compare_with_truth(model: Any, dataset: Dataset, located: Located | None) ->
     if located.truth.source == POSES:
         views = {image.name: image.truth for image in dataset.images if image.truth}
         found["rotation_error"] = _rotation_error(model, views, located.frame)
-        found["surface_error"] = _surface_error(model, views, located.frame)
+        depth_errors = surface_errors(model, views, located.frame)
+        found["surface_error"] = float(np.median(depth_errors)) if len(depth_errors) else None
     return found
 
 
@@ -213,10 +214,11 @@ def _rotation_error(model: Any, views: dict[str, TrueView], frame: Similarity) -
     return float(np.median(rotation_angles(estimated, true)))
 
 
-def _surface_error(model: Any, views: dict[str, TrueView], frame: Similarity) -> float | None:
-    """Median over points of the median over their images of the error in depth.
+def surface_errors(model: Any, views: Mapping[str, TrueView], frame: Similarity) -> Array:
+    """Error in depth of each point of a model, (P,) metres: the median over its images.
 
-    The point is seen through the true camera: its depth there against that of the surface.
+    The depth of the point in the true camera is compared with that of the surface. Points that no
+    true camera sees are left out.
     """
     errors: dict[int, list[float]] = {}
     for image in registered(model):
@@ -229,9 +231,7 @@ def _surface_error(model: Any, views: dict[str, TrueView], frame: Similarity) ->
         for number, error in zip(numbers, found, strict=True):
             if np.isfinite(error):
                 errors.setdefault(number, []).append(float(error))
-    if not errors:
-        return None
-    return float(np.median([np.median(each) for each in errors.values()]))
+    return np.array([np.median(each) for each in errors.values()])
 
 
 def _depth_errors(points: Array, view: TrueView) -> Array:
