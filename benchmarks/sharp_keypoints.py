@@ -27,7 +27,7 @@ from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import reconstruct_scene
-from aerocues.reconstruction.truth import surface_errors, to_true_frame, true_positions
+from aerocues.reconstruction.truth import centres_of, locate, surface_errors, true_positions
 from aerocues.results.combination_columns import name_in_row
 
 COMBINATIONS = (
@@ -67,11 +67,11 @@ def right_points(models: Models, combination: str, dataset: Dataset) -> int | No
     if not folder.is_dir() or truth is None or truth.source != "poses":
         return None
     model = pycolmap.Reconstruction(str(folder))
-    frame = to_true_frame(model, truth, ReconstructionProtocol().requirements)
-    if frame is None:
+    located = locate(centres_of(model), truth, ReconstructionProtocol().requirements)
+    if located is None:
         return None
     views = {image.name: image.truth for image in dataset.images if image.truth}
-    return int((surface_errors(model, views, frame) <= RIGHT).sum())
+    return int((surface_errors(model, views, located.frame) <= RIGHT).sum())
 
 
 def compared(dataset: Dataset, combinations: str, folder: Path) -> Iterator[list[str]]:

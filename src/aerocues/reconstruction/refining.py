@@ -19,7 +19,7 @@ from aerocues.results.metrics import Row
 
 Inliers = NDArray[np.bool_]
 """(M,) of the matches of a pair."""
-GRAY_BYTES = 512 * 2**20
+GRAY_BYTES = 256 * 2**20
 
 
 class GrayImages:
