@@ -118,7 +118,7 @@ class _Kind:
         if not len(kept):
             return Features(kept, np.empty((0, 1), np.uint8))
         cv2.setRNGSeed(SEED)
-        raw = self._descriptor.call(pixels.bgr, self._descriptor.prepare(kept))
+        raw = self._descriptor.call(pixels.bgr, self._descriptor.prepare(kept, pixels.bgr))
         return self._descriptor.read(raw)
 
     def matched(self, first: Features, second: Features) -> Seeds:
