@@ -80,10 +80,10 @@ class ModelMaker(ABC):
         except (RuntimeError, ValueError, KeyError, IndexError) as error:  # what COLMAP raises
             text = " ".join(str(error).split())
             outcome = Outcome("error", f"{self._stage}: {type(error).__name__}: {text}")
-        times = [self.row.get(f"{stage}_seconds") for stage in STAGES]
-        if None not in times:
+        times = [f"{stage}_seconds" for stage in STAGES]
+        if all(name in self.row for name in times):
             optional = self.row.get(f"{OPTIONAL_STAGE}_seconds", 0.0)
-            self.row["reconstruction_seconds"] = sum(times) + optional
+            self.row["reconstruction_seconds"] = sum(self.row[name] for name in times) + optional
         return {**self.row, "status": outcome.status, "message": outcome.message}
 
     def timed(self, stage: str, call: Callable[[], Result]) -> Result:
