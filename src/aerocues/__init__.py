@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
     from aerocues.methods.plugins import register
-    from aerocues.modelling import reconstruct
+    from aerocues.modelling.recommend import recommend
+    from aerocues.modelling.reconstruct import reconstruct
     from aerocues.pipeline.pipeline import Pipeline
     from aerocues.pipeline.two_images import MatchedImages, features, match
     from aerocues.progress import Event
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from aerocues.scoring.ranking import Ranking
     from aerocues.scoring.validation import Validation
     from aerocues.simulation.simulate import simulate
-    from aerocues.tuning.recommend import recommend
     from aerocues.tuning.recommendation import Recommendation
     from aerocues.tuning.tune import Tuned, tune
 
@@ -69,11 +69,11 @@ _MODULES = {
     "ComparedResults": "scoring.across",
     "relate_outcomes": "scoring.outcomes",
     "Relations": "scoring.outcomes",
-    "reconstruct": "modelling",
+    "reconstruct": "modelling.reconstruct",
     "Models": "reconstruction.models",
     "write_report": "report.report",
     "figure": "report.figure",
-    "recommend": "tuning.recommend",
+    "recommend": "modelling.recommend",
     "Recommendation": "tuning.recommendation",
     "tune": "tuning.tune",
     "Tuned": "tuning.tune",

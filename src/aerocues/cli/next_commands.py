@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aerocues.defaults import FLIGHT_KEYPOINTS
+from aerocues.results.combination_columns import name_in_row
 
 if TYPE_CHECKING:
     from aerocues.tuning.recommendation import Recommendation
@@ -71,12 +72,15 @@ class AsMeasured:
 def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     """Commands that continue from a recommendation; models only for scenes with depth."""
     few = ",".join(found.ranked["combination"].head(FEW))
+    final = found.final.best_combination if found.final else None
+    best = name_in_row(final) if final else found.leader
     commands = [
         ["run", *measured.words(0), "-o", "results", "--combinations", few],
         ["report", str(found.folder)],
     ]
     if found.dataset.geometry == "epipolar":
-        words = ["-o", "models", *_one_scene(found), "--combinations", found.best]
+        words = ["-o", "models", *_one_scene(found), "--combinations", best]
+        words += ["--from", str(found.folder)]
         commands.insert(0, ["reconstruct", *measured.words(FLIGHT_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]
 

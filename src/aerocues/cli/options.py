@@ -72,6 +72,14 @@ MaxKeypointsOption = Annotated[
         min=0, metavar="N", help="Keep the N strongest keypoints of each image; 0 keeps all."
     ),
 ]
+EqualFootingOption = Annotated[
+    bool | None,
+    typer.Option(
+        "--equal-footing/--no-equal-footing",
+        help="Lower thresholds of detectors until they find --max-keypoints; default: yes, but not "
+        "for thesis or --from.",
+    ),
+]
 PairsOption = Annotated[
     str | None,
     typer.Option(

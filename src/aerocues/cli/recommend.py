@@ -51,6 +51,10 @@ def recommend(
     objective: Annotated[
         Objective, typer.Option(help="What the combination is used for.")
     ] = Objective.BALANCED,
+    final: Annotated[
+        bool,
+        typer.Option("--final/--no-final", help="Let models of the leaders decide, or the race."),
+    ] = True,
     top: TopOption = 5,
     device: Annotated[
         Path | None,
@@ -99,7 +103,8 @@ def recommend(
     """Recommend a combination for images, in minutes.
 
     Combinations race on representative pairs: the cheap ones first, then those that can still
-    win. After an interruption run the same command again: it continues.
+    win. A third of the time is kept for models of the leaders, beside COLMAP's default: the best
+    model decides. After an interruption run the same command again: it continues.
     """
     began = time.monotonic()
     import aerocues
@@ -118,6 +123,7 @@ def recommend(
                 output,
                 budget=budget,
                 objective=objective.value,
+                final=final,
                 sure=sure,
                 max_pairs=max_pairs,
                 max_keypoints=max_keypoints,
@@ -138,6 +144,7 @@ def recommend(
 
 def _print(found: Recommendation, top: int, *, explain: bool) -> None:
     from aerocues.cli.console import print_table, standard_output
+    from aerocues.cli.final_words import final_table
     from aerocues.cli.recommendation import answer, quality_note, ranking, story
 
     console = standard_output()
@@ -147,6 +154,9 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
         console.print()
     console.print(answer(found), soft_wrap=True, markup=False)
     console.print()
+    if found.final:
+        print_table(console, final_table(found.final, found.ranked["combination"].to_list()))
+        console.print("\nThe race on pairs:\n")
     print_table(console, ranking(found, top))
     console.print(f"* {quality_note(found)}; medians.")
     console.print(

@@ -6,6 +6,7 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import plain_table
+from aerocues.cli.final_words import headline, notes
 from aerocues.phrases import count, likelihood, spoken_seconds
 
 if TYPE_CHECKING:
@@ -32,12 +33,12 @@ ENDS = {
 
 def answer(found: Recommendation) -> str:
     """The best combination, its probability, the reasons and the cost."""
-    best = found.ranked.row(0, named=True)
+    final, best = found.final, found.ranked.row(0, named=True)
     parts = [
-        f"Take {found.best}.",
+        _paragraph(headline(final) if final else f"Take {found.best}."),
         "",
-        _paragraph(_certainty(found, best)),
-        "",
+        *(_labelled("models", notes(final)) if final else ()),
+        *_labelled("race", [_certainty(found, best)]),
         *_labelled("why", _why(found, best)),
         *_labelled("costs", _costs(found, best)),
         *_labelled("faster", _faster(found, best)),
@@ -78,14 +79,14 @@ def _certainty(found: Recommendation, best: dict[str, Any]) -> str:
     )
     told = f"of {found.combinations} for {found.objective.title} on these pairs"
     if chance >= PROBABLE:
-        first = f"It is the best {told} with a probability of {likelihood(chance)}"
+        first = f"{found.leader} is the best {told} with a probability of {likelihood(chance)}"
     else:
         first = (
-            f"It has the highest expected score {told}, but the probability that it is the best is "
-            f"only {likelihood(chance)}"
+            f"{found.leader} has the highest expected score {told}, but the probability that it is "
+            f"the best is only {likelihood(chance)}"
         )
     names = possible_winners(found.ranked)
-    others = [name for name in names if name != found.best]
+    others = [name for name in names if name != found.leader]
     if not others:
         return f"{first}: {basis}."
     named = ", ".join(others[:MOST_NAMED])

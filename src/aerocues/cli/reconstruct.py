@@ -13,6 +13,7 @@ from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
     CombinationsOption,
+    EqualFootingOption,
     MaxKeypointsOption,
     MaxWidthOption,
     MemoryLimitOption,
@@ -94,6 +95,7 @@ def reconstruct(
             help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
         ),
     ] = None,
+    equal_footing: EqualFootingOption = None,
     reference: Annotated[
         str | None,
         typer.Option(
@@ -138,7 +140,7 @@ def reconstruct(
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.live import display
-    from aerocues.modelling import open_as_measured
+    from aerocues.modelling.reconstruct import open_as_measured
 
     measured = None if results is None else aerocues.Results(results)
     with interruptible():
@@ -164,6 +166,7 @@ def reconstruct(
                 focal_length=focal_length,
                 mapper=mapper.value,
                 refine_keypoints=refine_keypoints,
+                equal_footing=equal_footing,
                 reference=reference,
                 baseline=baseline,
                 colours=colours,

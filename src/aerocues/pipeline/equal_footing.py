@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from aerocues.datasets.dataset import Image
 from aerocues.datasets.decoded import DecodedSource
 from aerocues.errors import SelectionError
+from aerocues.methods.combination import Combination
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.parameters import Value
 from aerocues.methods.presets import Preset
@@ -55,6 +56,44 @@ class Footing:
 def survey_image(images: Sequence[Image]) -> Image:
     """The image from which thresholds are set: the middle one, as flights begin over edges."""
     return images[len(images) // 2]
+
+
+def at_equal_footing(
+    methods: Methods,
+    preset: Preset,
+    images: Sequence[Image],
+    combinations: Sequence[Combination],
+    limit: KeypointLimit,
+    *,
+    seed: int = 0,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> tuple[Preset, list[Footing]]:
+    """The preset with thresholds that reach the limit, for the detectors of combinations.
+
+    A preset without a test against chance, as that of the thesis, stays what it is; so does any
+    where all keypoints are kept.
+
+    Parameters
+    ----------
+    methods, preset, seed, progress
+        As in `reach_keypoints`.
+    images : sequence of Image
+        Of the dataset.
+    combinations : sequence of Combination
+    limit : KeypointLimit
+
+    Raises
+    ------
+    ImageError
+        If the image in the middle cannot be read.
+    """
+    if not limit.count or not preset.chance_test:
+        return preset, []
+    detectors = list(dict.fromkeys(each.detector for each in combinations))
+    image = survey_image(images)
+    return reach_keypoints(
+        methods, preset, image, detectors, limit.count, seed=seed, progress=progress
+    )
 
 
 def reach_keypoints(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import collections
+import math
+import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
@@ -33,11 +35,14 @@ class ReconstructionLimits:
         verification, mapping. Also the limit of the wall seconds that one of them may be idle.
     memory_limit_mb : int
         Memory of one process.
+    deadline : float
+        Time of `time.monotonic` after which what is not finished is given up.
     """
 
     workers: int
     seconds: float
     memory_limit_mb: int
+    deadline: float = math.inf
 
 
 def _child(scene: Scene, limits: ReconstructionLimits) -> ChildProcess:
@@ -106,7 +111,7 @@ class _Lane:
 def run_reconstructions(
     scene: Scene, groups: Sequence[Group], limits: ReconstructionLimits, watch: Watch
 ) -> Generator[tuple[Combination, Row, bool], None, None]:
-    """Reconstruct all groups.
+    """Reconstruct all groups, or as many as are finished before the deadline.
 
     Yields
     ------
@@ -117,7 +122,7 @@ def run_reconstructions(
     queue = collections.deque(groups)
     lanes: list[_Lane] = []
     try:
-        while queue or lanes:
+        while (queue or lanes) and time.monotonic() < limits.deadline:
             while queue and len(lanes) < limits.workers:
                 lanes.append(_Lane(queue.popleft(), _child(scene, limits)))
             watch([Activity(n, *lane.child.doing()) for n, lane in enumerate(lanes)])

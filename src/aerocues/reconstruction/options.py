@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -40,6 +41,8 @@ class ReconstructionOptions:
         Gigabytes of each process; by default its share of 80 %.
     baseline : bool
         Whether COLMAP's default is a row of the table, too.
+    deadline : float
+        Time of `time.monotonic` after which nothing is made any more; never by default.
     retry_failed : bool
         Retry reconstructions that crashed, raised an error, or exceeded a limit.
 
@@ -59,6 +62,7 @@ class ReconstructionOptions:
     timeout: float | str = STAGE_TIMEOUT
     memory_limit: float | None = None
     baseline: bool = True
+    deadline: float = math.inf
     retry_failed: bool = False
 
     def __post_init__(self) -> None:
@@ -68,4 +72,5 @@ class ReconstructionOptions:
         """The limits of a process on this machine."""
         workers = worker_count(self.workers)
         memory = memory_mb(self.memory_limit) or share_of_memory(workers)
-        return ReconstructionLimits(workers, seconds_of("timeout", self.timeout), memory)
+        seconds = seconds_of("timeout", self.timeout)
+        return ReconstructionLimits(workers, seconds, memory, self.deadline)

@@ -106,7 +106,7 @@ class _Reconstruction:
         if made:
             self._tell.planned(total, 0)
             rows.update(self._made(first))
-        if first:
+        if BASELINE in rows:  # else the deadline came before
             self._calibrate(rows[BASELINE])
         require_focal_lengths(self._scene.cameras, self._scene.protocol)
         self._write_settings()

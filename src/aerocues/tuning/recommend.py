@@ -1,17 +1,15 @@
-"""Which combination to take, in minutes: representative pairs, a race, an answer."""
+"""A race of combinations on images: representative pairs, equal footing, an answer."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
-from aerocues.arguments import check_choice, check_number, check_whole, seconds_of
-from aerocues.datasets.catalog import DatasetLike, open_dataset
+from aerocues.arguments import check_choice, check_number, check_whole
 from aerocues.datasets.dataset import Dataset, Image, Pair
-from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
+from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, SURE
 from aerocues.errors import SelectionError
 from aerocues.evaluation.context import make_context
 from aerocues.evaluation.run import local_engine
@@ -20,14 +18,14 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
-from aerocues.pipeline.equal_footing import Footing, reach_keypoints, survey_image
+from aerocues.pipeline.equal_footing import at_equal_footing
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScorePreset
-from aerocues.tuning.device import Device, as_device
+from aerocues.tuning.device import Device
 from aerocues.tuning.flight_pairs import leaves_pairs_open, survey_flight
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
@@ -42,7 +40,7 @@ from aerocues.tuning.session import Session
 
 @dataclass(frozen=True)
 class RaceOptions:
-    """What is raced for, and how long; see `recommend`."""
+    """What is raced for, and how long; see `aerocues.recommend`."""
 
     budget: float = RACE_SECONDS
     objective: str = "balanced"
@@ -64,25 +62,19 @@ class RaceOptions:
         )
 
 
-def recommend(
-    dataset: DatasetLike,
-    combinations: Patterns | None = None,
-    output: str | Path | None = None,
+def recommend_by_race(
+    dataset: Dataset,
+    combinations: Patterns | None,
+    output: str | Path | None,
+    options: RaceOptions,
     *,
-    budget: float | str = RACE_SECONDS,
-    objective: str = "balanced",
-    sure: float = SURE,
-    max_pairs: int = RACE_PAIRS,
-    max_width: int = RACE_WIDTH,
     max_keypoints: int = FLIGHT_KEYPOINTS,
     preset: str | Preset = "default",
-    device: Device | Mapping[str, Any] | str | Path | None = None,
-    seed: int = 0,
     workers: int | None = None,
     began: float | None = None,
     progress: Progress | None = None,
 ) -> Recommendation:
-    """Find the combination that suits images best, within a budget of time.
+    """Find the combination that suits images best by their pairs, within a budget of time.
 
     Pairs are chosen that stand for all; those that show nothing in common are left out. Then
     combinations race: all that are cheap are looked at, and more pairs are measured of those that
@@ -90,43 +82,15 @@ def recommend(
 
     Parameters
     ----------
-    dataset : Dataset, str, path or sequence of paths
-        From `aerocues.open_dataset`, or what that would be given.
-    combinations : str, Combination or iterable of both, optional
-        Globs such as ``"ORB-*,SIFT-SIFT-*"`` or combinations; all meaningful ones by default.
-    output : path, optional
-        Results folder, made or continued: an interrupted race goes on from there, and one that is
-        finished gives the same answer again. By default ``NAME-race``, of the name of the dataset.
-    budget : float or str
-        Wall time in all: seconds, or a text such as ``"5min"``.
-    objective : {"balanced", "speed", "accuracy", "reconstruction", "robust"}
-        What the best is to be best for.
-    sure : float
-        Probability of the leader, 0.5 to 1, at which the race ends before the budget is spent.
-    max_pairs : int
-        How many pairs stand for all, at most; 2 or more.
-    max_width : int
-        Wider images are shrunk to this width in pixels; 0: none. A `Dataset` stays as it was
-        opened.
-    max_keypoints : int
-        The strongest keypoints that are kept in an image; 0 keeps all.
-    preset : str or Preset
-        Parameters of the methods.
-    device : Device, mapping or path, optional
-        Machine whose times count: ``compare([here, there]).factors()``, or a file of them; this one
-        by default.
-    seed : int
-        Of all that is random.
-    workers : int, optional
-        Processes at a time; as many as there are cores by default.
-    began : float, optional
-        From when on the budget counts, by `time.monotonic`; the call by default.
-    progress : callable, optional
-        Called with each `aerocues.Event`.
+    dataset : Dataset
+    combinations, output, max_keypoints, preset, workers, began, progress
+        As in `aerocues.recommend`.
+    options : RaceOptions
 
     Returns
     -------
     Recommendation
+        Without a final.
 
     Raises
     ------
@@ -135,22 +99,21 @@ def recommend(
         budget or choice are too small.
     """
     began = time.monotonic() if began is None else began
-    seconds, machine = seconds_of("budget", budget), as_device(device)
-    options = RaceOptions(seconds, objective, sure, max_pairs, seed, machine)
+    seconds, machine, seed = options.budget, options.device, options.seed
     limit, parts = keypoint_limit(max_keypoints), as_preset(preset)
     engine_here = local_engine("estimated", workers)
-    if not isinstance(dataset, Dataset):
-        dataset = open_dataset(dataset, max_width=max_width)
     store = Store.create(Path(output or f"{dataset.name}-race"))
     tell = RaceProgress(progress, seconds)
     flight = None
     if leaves_pairs_open(dataset):
-        flight = survey_flight(dataset, max_pairs, seed, tell.surveyed)
-    part = flight.dataset if flight else _spread(dataset, max_pairs, seed)
+        flight = survey_flight(dataset, options.max_pairs, seed, tell.surveyed)
+    part = flight.dataset if flight else _spread(dataset, options.max_pairs, seed)
     pairs = part.pairs
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
-    parts, footings = _at_equal_footing(context, parts, chosen, tell)
+    parts, footings = at_equal_footing(
+        context.methods, parts, part.images, chosen, limit, seed=seed, progress=tell.reached
+    )
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     context = replace(context, references=store.references)
     with store.writing(), engine_here.standing(context) as engine:
@@ -161,7 +124,7 @@ def recommend(
         with engine_here.standing(evaluators.overlap.context) as other:
             own = engine if evaluators.overlap is evaluators.race else other
             seen = find_overlap(evaluators.overlap, own, pairs, session, seed)
-        aim = OBJECTIVES[objective]
+        aim = OBJECTIVES[options.objective]
         seen = _raceable(seen, evaluators.race, parts, surveyed=flight is not None)
         scoring = aim.scoring(references=bool(seen.referenced), chance_test=parts.chance_test)
         raced = seen.referenced or seen.overlapping
@@ -187,20 +150,6 @@ def recommend(
         parts,
         tuple(footings),
         flight,
-    )
-
-
-def _at_equal_footing(
-    context: Context, preset: Preset, chosen: Sequence[Combination], tell: RaceProgress
-) -> tuple[Preset, list[Footing]]:
-    """The preset with thresholds that reach the number of keypoints; the thesis's stays."""
-    count = context.protocol.limit.count
-    if not count or not preset.chance_test:
-        return preset, []
-    detectors = list(dict.fromkeys(each.detector for each in chosen))
-    image, seed = survey_image(context.dataset.images), context.protocol.seed
-    return reach_keypoints(
-        context.methods, preset, image, detectors, count, seed=seed, progress=tell.reached
     )
 
 

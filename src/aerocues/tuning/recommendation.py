@@ -11,7 +11,9 @@ from aerocues.methods.presets import Preset
 from aerocues.notebooks import as_html
 from aerocues.phrases import count, likelihood
 from aerocues.pipeline.equal_footing import Footing
+from aerocues.results.combination_columns import name_in_row
 from aerocues.scoring.objectives import Objective
+from aerocues.tuning.final import Final
 from aerocues.tuning.flight_pairs import SurveyedFlight
 from aerocues.tuning.race import RaceOutcome
 from aerocues.tuning.representative import Seen
@@ -51,6 +53,8 @@ class Recommendation:
         What became of each detector's threshold; empty where nothing was to be reached.
     flight : SurveyedFlight or None
         What a survey saw, where pairs were chosen by one.
+    final : Final or None
+        Models of the leaders, where there was time for them.
     """
 
     dataset: Dataset
@@ -66,12 +70,15 @@ class Recommendation:
     preset: Preset
     footings: tuple[Footing, ...] = ()
     flight: SurveyedFlight | None = None
+    final: Final | None = None
 
     def __repr__(self) -> str:
         chance = likelihood(float(self.ranked["probability"][0]))
+        how = "by the models of the leaders; " if self.best != self.leader else ""
         return (
-            f"Recommendation: take {self.best}, the best of {self.combinations:,} for "
-            f"{self.objective.title} on {self.dataset.name} with a probability of {chance}; "
+            f"Recommendation: take {self.best}; {how}{self.leader} is the best of "
+            f"{self.combinations:,} for {self.objective.title} on pairs of {self.dataset.name} "
+            f"with a probability of {chance}; "
             f"{count(int(self.outcome.known.sum()), 'measurement')} on "
             f"{count(len(self.seen.overlapping), 'pair')} in {self.folder}"
         )
@@ -80,6 +87,12 @@ class Recommendation:
         return as_html(repr(self), self.ranked)
 
     @property
-    def best(self) -> str:
-        """The combination to take."""
+    def leader(self) -> str:
+        """The combination with the highest expected score in the race."""
         return str(self.ranked["combination"][0])
+
+    @property
+    def best(self) -> str:
+        """What to take: the best model's combination or COLMAP's default; else the leader."""
+        row = self.final.best if self.final else None
+        return name_in_row(row) if row else self.leader

@@ -1,4 +1,4 @@
-"""The function that makes 3D models, as users of the library call it."""
+"""Makes 3D models of a scene, as users of the library call it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.defaults import FLIGHT_KEYPOINTS, RECONSTRUCTED, STAGE_TIMEOUT
 from aerocues.errors import ArgumentError, ReconstructionError
 from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
 from aerocues.methods.preset_files import recorded_preset
-from aerocues.methods.presets import Preset, preset_named, preset_names
-from aerocues.methods.selection import Patterns
-from aerocues.progress import Progress
+from aerocues.methods.presets import Preset, as_preset, preset_named, preset_names
+from aerocues.methods.selection import Patterns, select
+from aerocues.methods.strongest import keypoint_limit
+from aerocues.pipeline.equal_footing import at_equal_footing
+from aerocues.progress import Progress, StageProgress
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
 from aerocues.reconstruction.options import ReconstructionOptions
@@ -39,6 +42,7 @@ def reconstruct(
     focal_length: float | None = None,
     mapper: Mapper = "incremental",
     refine_keypoints: bool | None = None,
+    equal_footing: bool | None = None,
     reference: str | Combination | None = None,
     baseline: bool = True,
     colours: bool = True,
@@ -86,6 +90,10 @@ def reconstruct(
     refine_keypoints : bool, optional
         Whether keypoints of tracks are refined by least-squares matching before COLMAP gets them;
         by default they are, but with the preset ``"thesis"``.
+    equal_footing : bool, optional
+        Whether thresholds of detectors are lowered until they find `max_keypoints` in an image, so
+        that methods are compared and not thresholds; by default they are, but not with `results`,
+        which have their own, nor with the preset ``"thesis"``.
     reference : str or Combination, optional
         To whose cloud distances are measured; the best model by default.
     baseline : bool
@@ -128,8 +136,20 @@ def reconstruct(
     if top is not None:
         check_whole("top", top, 1)
     measured = None if results is None else as_results(results)
+    scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)
+    store = None if measured is None else open_results(measured.folder, scene)
+    if combinations is None and measured is not None:
+        combinations = best_combinations(
+            measured, scene.name, RECONSTRUCTED if top is None else top
+        )
+    assert combinations is not None
+    parts = as_preset(preset or preset_of_results(measured))
+    if measured is None if equal_footing is None else equal_footing:
+        parts = preset_at_equal_footing(
+            scene, combinations, parts, max_keypoints, seed=seed, progress=progress
+        )
     options = ReconstructionOptions(
-        preset=preset or preset_of_results(measured),
+        preset=parts,
         protocol=ReconstructionProtocol(seed, max_keypoints, intrinsics, focal_length, mapper),
         refine_keypoints=refine_keypoints,
         wanted=Wanted(colours, undistort),
@@ -141,14 +161,28 @@ def reconstruct(
         baseline=baseline,
         retry_failed=retry_failed,
     )
-    scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)
-    store = None if measured is None else open_results(measured.folder, scene)
-    if combinations is None and measured is not None:
-        combinations = best_combinations(
-            measured, scene.name, RECONSTRUCTED if top is None else top
-        )
-    assert combinations is not None
     return reconstruct_scene(scene, combinations, Path(output), options, progress, store)
+
+
+def preset_at_equal_footing(
+    scene: Dataset,
+    combinations: Patterns,
+    preset: Preset,
+    max_keypoints: int,
+    *,
+    seed: int,
+    progress: Progress | None,
+) -> Preset:
+    """The preset with thresholds that reach so many keypoints; see `at_equal_footing`."""
+    methods = installed_methods().with_preset(preset)
+    told = StageProgress(progress, "setting thresholds", "detectors")
+    changed, _ = at_equal_footing(
+        *(methods, preset, scene.images, select(methods, combinations)),
+        keypoint_limit(max_keypoints),
+        seed=seed,
+        progress=told.count,
+    )
+    return changed
 
 
 def open_as_measured(

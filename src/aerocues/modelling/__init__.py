@@ -1,0 +1,1 @@
+"""What needs both measurements and models: reconstructing the best, and recommending by models."""

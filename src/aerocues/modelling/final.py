@@ -1,0 +1,118 @@
+"""Builds the models of a race's leaders, and COLMAP's default beside them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.methods.combination import Combination
+from aerocues.methods.exact.availability import why_not_exact
+from aerocues.methods.matchers import EXACT
+from aerocues.pipeline.block import MOST_IMAGES, connected_block
+from aerocues.pipeline.survey import Survey
+from aerocues.progress import Progress
+from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.protocol import ReconstructionProtocol
+from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
+from aerocues.results.measured_results import Results
+from aerocues.tuning.final import Final
+from aerocues.tuning.finalists import finalists
+from aerocues.tuning.recommendation import Recommendation
+
+MODELS = "models"
+SHARE = 1 / 3
+"""Of the budget, kept for the final."""
+LEAST_SECONDS = 20.0
+"""Less does not build a model of a few images with a few combinations."""
+FEWEST_IMAGES = 3
+
+
+def has_final(dataset: Dataset, budget: float) -> bool:
+    """Whether models of the leaders can be built: one scene with depth, and enough time."""
+    return (
+        dataset.geometry == "epipolar"
+        and len(dataset.images) >= FEWEST_IMAGES
+        and len({pair.sequence for pair in dataset.pairs}) == 1
+        and budget * SHARE >= LEAST_SECONDS
+    )
+
+
+def build_final(
+    found: Recommendation,
+    dataset: Dataset,
+    *,
+    seconds: float,
+    max_keypoints: int,
+    seed: int,
+    workers: int | None,
+    progress: Progress | None,
+) -> Final | None:
+    """Build models of the leaders with the exact matcher, and of COLMAP's default.
+
+    Parameters
+    ----------
+    found : Recommendation
+        What the race found.
+    dataset : Dataset
+        All images. Those of a large flight are a connected block that holds all classes of pairs.
+    seconds : float
+        Wall time; what is not finished by then is left out.
+    max_keypoints : int
+        Of an image, for COLMAP's default, too; 0: all.
+    seed : int
+    workers : int, optional
+    progress : callable, optional
+
+    Returns
+    -------
+    Final or None
+        None where no model was finished.
+    """
+    deadline = time.monotonic() + seconds
+    leaders = finalists(found.ranked["combination"].to_list(), Results(found.folder).table())
+    asked = tuple(dict.fromkeys(exactly_matched(each) for each in leaders))
+    scene = scene_of_final(dataset, found.flight.survey if found.flight else None)
+    options = ReconstructionOptions(
+        preset=found.preset,
+        protocol=ReconstructionProtocol(seed, max_keypoints),
+        workers=workers,
+        deadline=deadline,
+    )
+    folder, names = found.folder / MODELS, [str(each) for each in asked]
+    store = open_results(found.folder, scene)
+    models = reconstruct_scene(scene, names, folder, options, progress, store)
+    images = len(scene.images), len(dataset.images)
+    final = Final.of_models(models.table(), asked, images, folder, found.objective)
+    return final if final.rows else None
+
+
+def exactly_matched(combination: Combination) -> Combination:
+    """The same with the exact matcher: the matches of brute force in a fifth of its time."""
+    if why_not_exact():
+        return combination
+    return replace(combination, matcher=EXACT.name)
+
+
+def scene_of_final(dataset: Dataset, survey: Survey | None) -> Dataset:
+    """Images to build and their pairs: those that a survey saw overlap, else the dataset's own."""
+    if survey is None:
+        return dataset
+    names = set(survey.images)
+    if len(names) > MOST_IMAGES:
+        names = set(connected_block(survey))
+    others = [each for each in dataset.settings if each[0] != "pairs"]
+    return replace(
+        dataset,
+        images=[image for image in dataset.images if image.name in names],
+        pairs=_pairs(survey, names, dataset.pairs),
+        settings=(*others, ("pairs", "surveyed")),
+    )
+
+
+def _pairs(survey: Survey, names: set[str], own: Sequence[Pair]) -> list[Pair]:
+    sequence = own[0].sequence
+    found = [(survey.images[each.image_1], survey.images[each.image_2]) for each in survey.pairs]
+    kept = [(first, second) for first, second in found if {first, second} <= names]
+    return [Pair(number, *both, sequence) for number, both in enumerate(kept)]
