@@ -34,7 +34,7 @@ def test_a_ranking_is_a_table_with_intervals_and_weights(call: Call, finished: P
     assert [words[0] for words in ranked] == ["1", "2", "3", "4"]
     scores = [float(words[2]) for words in ranked]
     assert scores == sorted(scores, reverse=True)
-    assert "precision_beyond_chance" in answer.out
+    assert "ref_precision@3" in answer.out
     assert "preset default" in answer.out
 
 
@@ -55,7 +55,7 @@ def test_json_has_ranking_weights_and_settings(call: Call, finished: Path) -> No
     ranking = facts["ranking"]
     assert len(ranking) == 4
     wanted = {"combination", "score", "score_low", "score_high", "rank", "rank_low", "rank_high"}
-    wanted |= {"probability_best", "success_rate", "precision_beyond_chance", "matches"}
+    wanted |= {"probability_best", "success_rate", "ref_precision@3", "coverage"}
     for row in ranking:
         assert wanted <= row.keys()
         assert row["rank_low"] <= row["rank_high"]

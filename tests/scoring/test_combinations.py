@@ -91,12 +91,12 @@ def test_what_cannot_be_arranged_is_told(given: object, criteria: list[str], tol
 
 
 def test_the_preset_suits_the_measurements() -> None:
-    assert suitable_preset(rows(row(ORB, 0))).name == "default"
+    assert suitable_preset(rows(row(ORB, 0))).name == "inliers"
     untested = rows(row(ORB, 0, chance_inliers=None, excess_inliers=None))
     assert suitable_preset(untested).name == "thesis"
     assert table_of(Stored(untested)).preset.name == "thesis"
     with pytest.raises(ScoreError, match="thesis"):
-        table_of(Stored(untested), "default")
+        table_of(Stored(untested), "inliers")
 
 
 def test_one_of_several_datasets_is_chosen() -> None:

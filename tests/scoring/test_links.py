@@ -10,7 +10,7 @@ import pytest
 
 from aerocues.errors import ScoreError
 from aerocues.scoring.bootstrap import bootstrap
-from aerocues.scoring.combinations import decision_table
+from aerocues.scoring.combinations import decision_table, suitable_preset
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.cues import score
 from aerocues.scoring.links import Links
@@ -101,7 +101,8 @@ def flight() -> pl.DataFrame:
 
 
 def test_what_links_no_turned_pair_does_not_win() -> None:
-    for preset in ("reference", "models"):
+    assert suitable_preset(flight()).name == "default"
+    for preset in ("default", "models"):
         found = measured_table(Stored(flight()), preset)
         assert found.table.repeats == ("0", "1", "2", "3")
         scores = score(found.table, found.preset.settings)
@@ -126,7 +127,8 @@ def test_a_failed_pair_links_nothing_and_an_unmeasured_one_says_nothing() -> Non
     assert found.links.classes.tolist() == [0, 1]
 
 
-def test_without_references_there_is_no_score_by_them() -> None:
+def test_without_references_scores_are_by_inliers() -> None:
     plain = rows(row(TURNING, 0), row(UPRIGHT, 0))
+    assert suitable_preset(plain).name == "inliers"
     with pytest.raises(ScoreError, match="reference"):
-        measured_table(Stored(plain), "reference")
+        measured_table(Stored(plain), "default")

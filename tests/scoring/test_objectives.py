@@ -35,7 +35,7 @@ def test_efficiency_leaves_weights_as_they_are() -> None:
 def test_sixteen_times_the_time_must_be_twice_as_good() -> None:
     speed = OBJECTIVES["speed"]
     np.testing.assert_allclose(speed.hurry(np.array([1.0, 16.0, 0.0625])), [0.5, 0.25, 1.0])
-    plain = replace(SCORE_PRESETS["default"], criteria=("recall",))
+    plain = replace(SCORE_PRESETS["inliers"], criteria=("recall",))
     assert speed.criteria(plain) == ("recall", "total_seconds")
     timed = replace(plain, criteria=("total_seconds",))
     assert speed.criteria(timed) == ("total_seconds",)
@@ -55,7 +55,7 @@ def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:
 def test_every_objective_weighs_what_its_preset_measures(name: str, references: bool) -> None:
     objective = OBJECTIVES[name]
     scoring = objective.scoring(references=references)
-    assert scoring.name == (objective.preset if references else "default")
+    assert scoring.name == (objective.preset if references else "inliers")
     assert objective.scoring(references=False, chance_test=False).name == "thesis"
     criteria = criteria_named(objective.criteria(scoring))
     weights = objective.weights(np.full(len(criteria), 1 / len(criteria)), criteria)

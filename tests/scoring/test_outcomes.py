@@ -106,7 +106,7 @@ def test_failed_pairs_count_for_the_success_rate_only() -> None:
         *(row(name, 1, status="no_model", inliers=999) for name in NAMES[2:]),
     )
     stored = Stored(measured, MODELS)
-    found = relate_outcomes(stored, "default")
+    found = relate_outcomes(stored, "inliers")
     at = found.features.index("inliers")
     np.testing.assert_array_equal(found.feature_values[:, at], [each[0] for each in INLIERS])
     assert "success_rate" not in found.features  # it is one half for all

@@ -51,5 +51,5 @@ def test_preset_of_the_thesis_is_as_published() -> None:
 
 
 def test_an_unknown_preset() -> None:
-    with pytest.raises(ScoreError, match="default, reference, models, thesis"):
+    with pytest.raises(ScoreError, match="default, models, inliers, thesis"):
         score_preset_named("best")

@@ -21,6 +21,11 @@ WIDE = 96
 RANK_WIDTH = 4
 # Criteria that the table may show, in order of priority, and their headings.
 HEADINGS: dict[str, str] = {
+    "ref_precision@3": "share\nright",
+    "ref_matches@3": "right\nmatches",
+    "coverage": "\ncoverage",
+    "sharpness": "\nsharp",
+    "seconds_per_1k_ref_matches": "s / 1k\nright",
     "precision_beyond_chance": "inlier\nratio*",
     "precision": "inlier\nratio",
     "excess_inliers": "\ninliers*",

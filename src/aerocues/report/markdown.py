@@ -133,7 +133,7 @@ def _table(found: ReportEntry) -> pl.DataFrame:
     seconds = found.seconds()
     frame = found.ranking.frame("combination").head(TOP)
     names = frame["combination"].to_list()
-    ratio = next((c for c in ("precision_beyond_chance", "precision") if c in frame.columns), None)
+    ratio = next((c for c in ("ref_precision@3", "precision_beyond_chance", "precision") if c in frame.columns), None)
     return frame.select(
         "rank",
         pl.format("`{}`", "combination").alias("combination"),

@@ -25,7 +25,7 @@ PATIENCE = 10.0
 START_SECONDS = 60.0
 FIGURES = (
     *("status", "keypoints_1", "keypoints_2", "matches", "inliers", "precision"),
-    *("precision_beyond_chance", "gt_precision@3", "total_seconds"),
+    *("precision_beyond_chance", "ref_precision@3", "gt_precision@3", "total_seconds"),
 )
 STAGES = (
     *("detect_seconds_1", "detect_seconds_2", "describe_seconds_1", "describe_seconds_2"),

@@ -42,8 +42,8 @@ def score(
     results : Results or path
         A results folder or packed results.
     preset : str, optional
-        ``default`` (inliers beyond chance, failed pairs count as the worst) or ``thesis``; the
-        one that suits the measurements by default.
+        ``default`` (right matches by references of the pairs, times links), ``inliers``,
+        ``models`` or ``thesis``; the one that suits the measurements by default.
     criteria : str or sequence of str, optional
         Names of rows of `criteria.CRITERIA`, in place of the preset's.
     dataset : str, optional

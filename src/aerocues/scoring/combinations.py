@@ -43,8 +43,19 @@ def has_reference(rows: pl.DataFrame) -> bool:
 
 
 def suitable_preset(rows: pl.DataFrame) -> ScorePreset:
-    """The preset ``default`` if inliers beyond chance were measured, else ``thesis``."""
-    return score_preset_named("default" if has_chance_test(rows) else "thesis")
+    """The default where most pairs have a reference; else inliers beyond chance, or the thesis's.
+
+    Pairs on which nothing succeeds, such as those of images without overlap, need none.
+    """
+    if has_reference(rows):
+        having = pl.col("reference") == REFERENCE
+        known = rows.filter(having)["pair"].n_unique()
+        of = rows.filter(having.fill_null(False) | pl.col("status").is_in(SUCCESS))[
+            "pair"
+        ].n_unique()
+        if 2 * known >= of:
+            return score_preset_named("default")
+    return score_preset_named("inliers" if has_chance_test(rows) else "thesis")
 
 
 def decision_table(
@@ -123,7 +134,7 @@ def decision_table(
 def _with_reference(rows: pl.DataFrame) -> pl.DataFrame:
     if not has_reference(rows):
         raise ScoreError(
-            "no pair has a reference, which tells right matches; score by inliers (preset default)"
+            "no pair has a reference, which tells right matches; score by inliers (preset inliers)"
         )
     # A row of a pair with a reference lacks it where its measurement ended before the comparison.
     having = rows.filter(pl.col("reference") == REFERENCE).select("pair").unique()

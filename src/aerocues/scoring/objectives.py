@@ -42,7 +42,7 @@ class Objective:
     name: str
     title: str
     definition: str
-    preset: str = "reference"
+    preset: str = "default"
     shares: Mapping[Aspect, float] = field(default_factory=dict)
     time_power: float = 0.0
     worst: float = 1.0
@@ -57,7 +57,7 @@ class Objective:
         chance_test : bool
             Whether inliers beyond chance were measured.
         """
-        fallback = "default" if chance_test else "thesis"
+        fallback = "inliers" if chance_test else "thesis"
         return score_preset_named(self.preset if references else fallback)
 
     def criteria(self, scoring: ScorePreset) -> tuple[str, ...]:
@@ -112,8 +112,8 @@ OBJECTIVES: dict[str, Objective] = {
         Objective(
             "efficiency",
             "quality and speed by CUES",
-            "CUES by right matches ('aerocues score --preset reference'), with weights estimated "
-            "from the measurements (the thesis: maximum efficiency)",
+            "CUES as 'aerocues score' gives it, with weights estimated from the measurements "
+            "(the thesis: maximum efficiency)",
         ),
         Objective(
             "speed",

@@ -112,22 +112,6 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
         ScorePreset(
             "default",
             (
-                "recall_beyond_chance",
-                "precision_beyond_chance",
-                "repeatability_beyond_chance",
-                "f1_beyond_chance",
-                "excess_inliers",
-                "matches",
-                "seconds_per_1k_matches",
-                "seconds_per_1k_excess_inliers",
-            ),
-            ScoreSettings(),
-            chance_fails=True,
-            description="inliers beyond chance; a failed pair counts as the worst",
-        ),
-        ScorePreset(
-            "reference",
-            (
                 "ref_matching_score@3",
                 "ref_precision@3",
                 "ref_repeatability",
@@ -150,6 +134,22 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
             description="what leads to good 3D models: coverage by right matches, times the links "
             "of each class of pairs",
             links=True,
+        ),
+        ScorePreset(
+            "inliers",
+            (
+                "recall_beyond_chance",
+                "precision_beyond_chance",
+                "repeatability_beyond_chance",
+                "f1_beyond_chance",
+                "excess_inliers",
+                "matches",
+                "seconds_per_1k_matches",
+                "seconds_per_1k_excess_inliers",
+            ),
+            ScoreSettings(),
+            chance_fails=True,
+            description="inliers beyond chance; a failed pair counts as the worst",
         ),
         ScorePreset(
             "thesis",

@@ -90,7 +90,7 @@ def search_objective(name: str) -> SearchObjective:
         If there is no such criterion, or it is a criterion of 3D models.
     """
     if name.lower() == CUES:
-        preset = score_preset_named("default")
+        preset = score_preset_named("inliers")
         criteria = tuple(criteria_named(preset.criteria))
         return SearchObjective(criteria, OBJECTIVES["efficiency"], preset.settings)
     [criterion] = criteria_named([name])

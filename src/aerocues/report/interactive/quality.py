@@ -129,7 +129,7 @@ def _means_along(steps: list[float], values: Array) -> tuple[list[float], list[f
 def ground_truth(view: View) -> Figure | str:
     """What inliers say against the truth; on the dotted line both agree. Failures count as 0."""
     truth = view.first_known("gt_precision@3", *view.known("gt_"))
-    guess = view.first_known("precision_beyond_chance", "precision")
+    guess = view.first_known("ref_precision@3", "precision_beyond_chance", "precision")
     if truth is None or guess is None:
         return "these images have no ground truth"
     x, y = (view.means(name, failed_as_zero=True) for name in (guess, truth))

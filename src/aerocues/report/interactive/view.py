@@ -15,7 +15,7 @@ from aerocues.report.columns import PairColumn, column_values, columns_for, matr
 from aerocues.report.entry import ReportEntry
 
 Array = NDArray[np.float64]
-QUALITY = ("precision_beyond_chance", "precision", "f1_score", "inliers")
+QUALITY = ("ref_precision@3", "precision_beyond_chance", "precision", "f1_score", "inliers")
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,7 +59,8 @@ function methodColumns(entry) {
 }
 
 const USUAL_MEANS = [
-  ["precision_beyond_chance", "precision"], ["excess_inliers", "inliers"],
+  ["ref_precision@3", "precision_beyond_chance", "precision"],
+  ["ref_matches@3", "excess_inliers", "inliers"],
   ["gt_precision@3"], ["homography_auc@3"], ["pose_auc@10"]];
 
 /** @param {Entry} entry @returns {Column[]} */

@@ -110,7 +110,7 @@ function scoreFigures(entry, a) {
   const total = entry.medians.total[a];
   const meanFigure = (/** @type {string | null} */ column) => (column === null ? null
     : /** @type {[string, string]} */ ([sentenceCase(labelOf(column)), shown(meansOf(entry, column)[a])]));
-  const precision = firstColumn(entry, ["precision_beyond_chance", "precision"]);
+  const precision = firstColumn(entry, ["ref_precision@3", "precision_beyond_chance", "precision"]);
   const truth = firstColumn(entry, ["gt_precision@3"]);
   return [
     ["CUES", `${fixed(score.score[a])} (${fixed(score.score_low[a])} to ${fixed(score.score_high[a])})`],

@@ -14,7 +14,7 @@ export const CURVES = {
     + "so is a line that ends before the others.",
   controls: [
     {name: "column", label: "Value", options: entry => columnOptions(entry),
-      fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision", "inliers"])},
+      fallback: entry => firstColumn(entry, ["ref_precision@3", "precision_beyond_chance", "precision", "inliers"])},
     {name: "top", label: "Combinations", fallback: () => "5",
       options: () => [3, 5, 7].map(size => ({key: String(size), label: `best ${size}`}))},
     {name: "failed", label: "Failures", fallback: () => "gap", options: () => [

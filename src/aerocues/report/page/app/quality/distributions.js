@@ -7,7 +7,7 @@ import {axisLabel, categoryAxis, logAxis, names} from "../shell/axes.js";
 import {columnOptions, scaleControl, topControl} from "../shell/controls.js";
 
 /* The first columns of these that an entry has, by pair. */
-const QUALITY_COLUMNS = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+const QUALITY_COLUMNS = ["ref_precision@3", "precision_beyond_chance", "precision", "f1_score", "inliers"];
 /** @typedef {{x: number[], y: string[], ids: string[]}} Points */
 
 /** @type {FigureSpec} */

@@ -34,7 +34,7 @@ export const TRUTH = {
     + "inliers are misleading. Failed pairs count as 0 in both.",
   controls: [
     {name: "x", label: "Horizontal", options: entry => columnOptions(entry, name => !isGroundTruth(name)),
-      fallback: entry => firstColumn(entry, ["precision_beyond_chance", "precision"])},
+      fallback: entry => firstColumn(entry, ["ref_precision@3", "precision_beyond_chance", "precision"])},
     {name: "y", label: "Vertical", options: entry => columnOptions(entry, isGroundTruth),
       fallback: entry => firstColumn(entry, ["gt_precision@3"])},
     colourControl("descriptor"),

@@ -8,8 +8,8 @@ import {logAxis} from "../shell/axes.js";
 import {colourControl, measureOptions} from "../shell/controls.js";
 import {isSound, pointsByMethod, scatterFrame} from "../shell/points.js";
 
-const SPEEDS = ["seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
-const QUALITIES = ["precision_beyond_chance", "precision", "f1_score", "inliers"];
+const SPEEDS = ["seconds_per_1k_ref_matches", "seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
+const QUALITIES = ["ref_precision@3", "precision_beyond_chance", "precision", "f1_score", "inliers"];
 
 /** @param {Entry} entry @param {string[]} keys */
 function firstMeasure(entry, keys) {
@@ -63,7 +63,7 @@ function measureAxis(measure, rows) {
 
 /** @param {string} name */
 function isCount(name) {
-  return /^(inliers|excess_inliers|matches|keypoints_\d|points_3d)$/.test(name);
+  return /^(inliers|excess_inliers|matches|ref_matches@3|keypoints_\d|points_3d)$/.test(name);
 }
 
 /** @param {number[]} rows @param {Measure} x @param {Measure} y */

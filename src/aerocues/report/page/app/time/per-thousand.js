@@ -38,6 +38,6 @@ export const PER_THOUSAND = {
 
 /** @param {Entry} entry */
 function perThousand(entry) {
-  return ["seconds_per_1k_matches", "seconds_per_1k_inliers", "seconds_per_1k_excess_inliers"]
+  return ["seconds_per_1k_matches", "seconds_per_1k_inliers", "seconds_per_1k_excess_inliers", "seconds_per_1k_ref_matches"]
     .filter(name => measureOf(entry, name));
 }

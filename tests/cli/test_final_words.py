@@ -1,0 +1,34 @@
+"""The final in words."""
+
+from __future__ import annotations
+
+from aerocues.cli.final_words import headline, notes
+from aerocues.results.reconstruction_schema import BASELINE
+from tests.tuning.test_final import ORB, SIFT, final, model
+
+
+def test_the_headline_names_the_best_model_and_colmaps_default_beside_it() -> None:
+    found = final(model(SIFT), model(BASELINE, points_in_3_images=100, points_3d=1234))
+    assert headline(found) == (
+        "Take SIFT-SIFT-L2-EXACT: 10 of 10 images in the model, 800 points seen by 3.5 images, "
+        "1.00 px, in 10 s; COLMAP's default: 10 images, 1,234 points, 1.00 px, 10 s."
+    )
+
+
+def test_where_nothing_beats_colmaps_default_it_says_so() -> None:
+    found = final(model(SIFT), model(BASELINE, reprojection_error=0.5))
+    assert headline(found).startswith("Take COLMAP's default: 10 of 10 images")
+    assert "The best combination, SIFT-SIFT-L2-EXACT: 10 images, 800 points" in headline(found)
+
+
+def test_no_model_is_told() -> None:
+    found = final(model(SIFT, status="no_model", registered_images=None))
+    assert "No model" in headline(found)
+
+
+def test_notes_tell_who_came_close_and_who_had_no_time() -> None:
+    found = final(model(SIFT), model(ORB, points_in_3_images=399))
+    told = " ".join(notes(found))
+    assert "ORB-ORB-HAM-EXACT is as good within 5%" in told
+    assert "no time for COLMAP's default, STAR-BRISK-HAM-EXACT" in told
+    assert "(10 of 10)" in told

@@ -1,0 +1,64 @@
+"""A recommendation whose leaders build models of the images."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import aerocues
+from aerocues.datasets.dataset import Dataset
+from aerocues.reconstruction.models import Models
+from aerocues.results.combination_columns import name_in_row
+from aerocues.results.reconstruction_schema import BASELINE
+from tests.reconstruction.scenes import write_scene
+
+FEW = "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-FLANN"
+OPTIONS: dict[str, Any] = {"budget": "1h", "max_keypoints": 1000, "max_pairs": 4, "workers": 2}
+
+
+@pytest.fixture(scope="module")
+def landscape(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
+    return write_scene(tmp_path_factory.mktemp("landscape") / "images")
+
+
+@pytest.mark.slow
+def test_the_best_model_decides(landscape: Dataset, tmp_path: Path) -> None:
+    found = aerocues.recommend(landscape, FEW, tmp_path / "race", **OPTIONS)
+    final = found.final
+    assert final is not None
+    assert (final.images, final.of) == (9, 9)
+    assert final.unfinished == ()
+    names = [name_in_row(row) for row in final.rows]
+    assert sorted(names) == sorted(
+        [
+            str(BASELINE),
+            "SIFT-SIFT-L2-EXACT",
+            "ORB-ORB-HAM-EXACT",
+            "AKAZE-AKAZE-HAM-EXACT",
+        ]
+    )
+    assert found.best == names[0]
+    assert final.rows[0]["status"] == "ok"
+    assert final.rows[0]["placed_images"] == 9
+    # The models are there to be used, and in the results.
+    models = Models(tmp_path / "race" / "models")
+    assert models.cloud(found.best) is not None
+    stored = aerocues.Results(tmp_path / "race").reconstructions()
+    assert len(stored) == 4
+
+    # Once more: nothing is made again.
+    before = {row["reconstructed_at"] for row in final.rows}
+    again = aerocues.recommend(landscape, FEW, tmp_path / "race", **OPTIONS)
+    assert again.final is not None
+    assert {row["reconstructed_at"] for row in again.final.rows} == before
+    assert again.best == found.best
+
+
+@pytest.mark.slow
+def test_a_race_alone_has_no_final(landscape: Dataset, tmp_path: Path) -> None:
+    found = aerocues.recommend(landscape, FEW, tmp_path / "race", final=False, **OPTIONS)
+    assert found.final is None
+    assert found.best == found.leader
+    assert not (tmp_path / "race" / "models").exists()
