@@ -242,6 +242,8 @@ def smaller(command: str) -> str:
     if command.startswith("aerocues datasets fetch"):
         return "aerocues datasets fetch --help"
     command = re.sub(r" --budget \S+", " --budget 1h", command)
+    if command.startswith("aerocues recommend"):
+        command += " --no-final"
     if command.startswith(("aerocues run", "aerocues recommend")) and not CHOICE.search(command):
         command += TWO_METHODS
     return command

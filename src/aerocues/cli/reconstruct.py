@@ -95,6 +95,12 @@ def reconstruct(
             help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
         ),
     ] = None,
+    features_width: Annotated[
+        int | None,
+        typer.Option(
+            min=16, metavar="PIXELS", help="Find features in smaller images; models stay large."
+        ),
+    ] = None,
     equal_footing: EqualFootingOption = None,
     reference: Annotated[
         str | None,
@@ -166,6 +172,7 @@ def reconstruct(
                 focal_length=focal_length,
                 mapper=mapper.value,
                 refine_keypoints=refine_keypoints,
+                features_width=features_width,
                 equal_footing=equal_footing,
                 reference=reference,
                 baseline=baseline,

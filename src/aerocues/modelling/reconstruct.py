@@ -42,6 +42,7 @@ def reconstruct(
     focal_length: float | None = None,
     mapper: Mapper = "incremental",
     refine_keypoints: bool | None = None,
+    features_width: int | None = None,
     equal_footing: bool | None = None,
     reference: str | Combination | None = None,
     baseline: bool = True,
@@ -90,6 +91,9 @@ def reconstruct(
     refine_keypoints : bool, optional
         Whether keypoints of tracks are refined by least-squares matching before COLMAP gets them;
         by default they are, but with the preset ``"thesis"``.
+    features_width : int, optional
+        Pixels to which images are shrunk to find features in them, while keypoints are refined, and
+        models made, at the width of the images; by default that width.
     equal_footing : bool, optional
         Whether thresholds of detectors are lowered until they find `max_keypoints` in an image, so
         that methods are compared and not thresholds; by default they are, but not with `results`,
@@ -150,7 +154,9 @@ def reconstruct(
         )
     options = ReconstructionOptions(
         preset=parts,
-        protocol=ReconstructionProtocol(seed, max_keypoints, intrinsics, focal_length, mapper),
+        protocol=ReconstructionProtocol(
+            seed, max_keypoints, intrinsics, focal_length, mapper, features_width=features_width
+        ),
         refine_keypoints=refine_keypoints,
         wanted=Wanted(colours, undistort),
         reference=None if reference is None else str(reference),

@@ -14,6 +14,7 @@ from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import Announce, FeatureSource, TimedFeatures
 from aerocues.pipeline.features import StageError
 from aerocues.pipeline.pair_stages import PairStages
+from aerocues.reconstruction.feature_size import at_full_size, smaller
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.reconstruction.scene import Scene
 
@@ -45,9 +46,10 @@ class SceneMatcher:
         seconds = 0.0
         for image in self._scene.dataset.images:
             found = self._timed_features(image.name)
-            keypoints[image.name] = found.features.keypoints
+            width = self._scene.protocol.features_width
+            keypoints[image.name] = at_full_size(found.features.keypoints, image, width)
             seconds += found.seconds
-            if not np.isfinite(found.features.keypoints.xy).all():
+            if not np.isfinite(keypoints[image.name].xy).all():
                 raise StageError(
                     "error",
                     f"{self._combination.descriptor} describing {image.name} returned positions "
@@ -57,7 +59,8 @@ class SceneMatcher:
         return MatchedScene(keypoints, pairs, seconds, matching_seconds)
 
     def _timed_features(self, name: str) -> TimedFeatures:
-        found = self._features.features(self._scene.dataset.image(name), self._combination)
+        image = smaller(self._scene.dataset.image(name), self._scene.protocol.features_width)
+        found = self._features.features(image, self._combination)
         self._features.trim()
         if self._folder.problem:
             # Each image would be described anew for each of its pairs.

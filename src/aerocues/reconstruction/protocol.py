@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Literal, get_args
 
 from aerocues.arguments import check_choice, check_positive, check_whole
+from aerocues.datasets.fitting import SMALLEST
 from aerocues.defaults import FLIGHT_KEYPOINTS
 from aerocues.pipeline.protocol import ChanceTest, Refinement, Verification
 
@@ -106,6 +107,8 @@ class ReconstructionProtocol:
         Pairs whose matches do not beat chance are not given to COLMAP. With thousands of keypoints,
         images without overlap have enough matches to pass COLMAP's own verification. Such pairs
         take most of the mapping time, and some of them displace cameras.
+    features_width : int or None
+        Features are found in images shrunk to this width in pixels; None: at full width.
     refinement : Refinement or None
         How keypoints of tracks are refined before COLMAP gets them; None: not at all.
     error_limit : ErrorLimit or None
@@ -129,6 +132,7 @@ class ReconstructionProtocol:
     chance: ChanceTest | None = field(default_factory=ChanceTest)
     refinement: Refinement | None = field(default_factory=Refinement)
     error_limit: ErrorLimit | None = field(default_factory=ErrorLimit)
+    features_width: int | None = None
     thresholds: abc.Mapping[str, float] = field(default_factory=dict)
     mapping: Mapping = Mapping()
     requirements: Requirements = Requirements()
@@ -138,16 +142,20 @@ class ReconstructionProtocol:
         check_whole("max_keypoints", self.max_keypoints, 0)
         check_choice("intrinsics", self.intrinsics, get_args(Intrinsics))
         check_choice("mapper", self.mapper, get_args(Mapper))
+        if self.features_width is not None:
+            check_whole("features_width", self.features_width, SMALLEST)
         if self.focal_length is not None:
             check_positive("focal_length", self.focal_length)
 
     def matching_identity(self) -> dict[str, object]:
         """Settings that features and matches depend on."""
-        return {
+        settings: dict[str, object] = {
             "version": RECONSTRUCTION_VERSION,
             "seed": self.seed,
             "max_keypoints": self.max_keypoints,
         }
+        width = self.features_width
+        return settings if width is None else {**settings, "features_width": width}
 
     def identity(self) -> dict[str, object]:
         """Settings that the models of all combinations and their evaluation depend on.
@@ -158,7 +166,7 @@ class ReconstructionProtocol:
         settings = asdict(self)
         for name in ("thresholds", "intrinsics"):
             del settings[name]
-        for name in ("refinement", "error_limit"):
+        for name in ("refinement", "error_limit", "features_width"):
             if settings[name] is None:
                 del settings[name]
         return {"version": RECONSTRUCTION_VERSION, "refined": self.refined, **settings}

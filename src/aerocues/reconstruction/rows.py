@@ -77,6 +77,7 @@ def identity_of(scene: Scene, combination: Combination) -> Row:
         "preset": scene.preset,
         "pairing": dict(scene.dataset.settings).get("pairs", "own"),
         "max_keypoints": protocol.max_keypoints,
+        "features_width": protocol.features_width,
         "intrinsics": f"{refined} ({sources})",
         "mapper": protocol.mapper,
         "seed": protocol.seed,

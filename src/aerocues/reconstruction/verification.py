@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.verification import Verdict, Verifier
+from aerocues.reconstruction.feature_size import features_scale
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.scene import Scene
 
@@ -28,7 +29,8 @@ def linked_pairs(
     if scene.protocol.chance is None and scene.protocol.refinement is None:
         return {names: np.ones(len(matched.pairs[names]), bool) for names in enough}
     measurement = scene.measurement()
-    measurement = measurement.with_threshold(measurement.threshold(combination))
+    scale = features_scale(scene.dataset.images[0], scene.protocol.features_width)
+    measurement = measurement.with_threshold(measurement.threshold(combination) * scale)
     verifier = Verifier(measurement, "epipolar", Clock(measurement.seed))
     verdicts = {names: _verdict(verifier, matched, names) for names in enough}
     return {

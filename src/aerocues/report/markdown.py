@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from aerocues.scoring.comparison import Comparison
 
 TOP = 10
+RATIOS = {
+    "ref_precision@3": "share right",
+    "precision_beyond_chance": "inlier ratio",
+    "precision": "inlier ratio",
+}
 NAMED = 5
 SPECIAL = re.compile(r"([\\`*_\[\]<>|#&~])")
 
@@ -133,7 +138,7 @@ def _table(found: ReportEntry) -> pl.DataFrame:
     seconds = found.seconds()
     frame = found.ranking.frame("combination").head(TOP)
     names = frame["combination"].to_list()
-    ratio = next((c for c in ("ref_precision@3", "precision_beyond_chance", "precision") if c in frame.columns), None)
+    ratio = next((name for name in RATIOS if name in frame.columns), None)
     return frame.select(
         "rank",
         pl.format("`{}`", "combination").alias("combination"),
@@ -141,7 +146,7 @@ def _table(found: ReportEntry) -> pl.DataFrame:
         pl.Series("95 %", [_span(*each, ".3f") for each in _ends(frame, "score")]),
         pl.Series("ranks", [_span(*each, ".0f") for each in _ends(frame, "rank")]),
         pl.Series("success", [f"{100 * each:.0f} %" for each in frame["success_rate"]]),
-        *([pl.col(ratio).alias("inlier ratio")] if ratio else []),
+        *([pl.col(ratio).alias(RATIOS[ratio])] if ratio else []),
         pl.Series("seconds", [seconds.get(name) for name in names], dtype=pl.Float64),
     )
 

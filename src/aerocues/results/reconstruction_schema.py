@@ -152,6 +152,7 @@ _PROVENANCE = (
     _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
     _text("pairing", "how pairs were chosen"),
     _count("max_keypoints", "maximum number of keypoints per image, the strongest; 0: all"),
+    _count("features_width", "width of the images that features were found in, if smaller"),
     _text("intrinsics", "fixed or refined, and the source of the focal length"),
     _text("mapper", "incremental or global"),
     Column("seed", "integer", "", "seed of every stage"),
