@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from aerocues.datasets.dataset import Dataset, GpsPosition, Image
+from aerocues.datasets.decoding import FileSource
 from aerocues.methods.arrays import Keypoints
 from aerocues.reconstruction.alignment import Similarity
-from aerocues.reconstruction.diagnosis import judged, without_features, without_links
+from aerocues.reconstruction.diagnosis import (
+    judged,
+    told_left_out,
+    without_features,
+    without_links,
+)
 from aerocues.reconstruction.match_graph import parts_of, told_parts
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches, read_matched_scene
 from aerocues.reconstruction.protocol import Requirements
-from aerocues.reconstruction.truth import Located, TruePositions
+from aerocues.reconstruction.truth import Located, TruePositions, locate, true_positions
 
 IMAGES = ["a", "b", "c", "d", "e", "f"]
 WHOLE = {("a", "b"): 200, ("b", "c"): 80, ("c", "d"): 40, ("d", "e"): 30, ("e", "f"): 20}
@@ -132,3 +141,42 @@ def test_a_model_with_cameras_far_from_their_place() -> None:
         "b (23.1 m); the model is bent or wrongly joined"
     )
     assert judged(IMAGES, IMAGES, WHOLE, located(near), Requirements()).message is None
+
+
+def test_images_without_a_position_do_not_count_as_in_their_place() -> None:
+    found = located({"a": 0.5, "b": 0.4, "c": 20.0})
+    truth = TruePositions("gps", found.truth.by_name, dict.fromkeys("def", "no altitude"))
+    outcome = judged(IMAGES, IMAGES, WHOLE, replace(found, truth=truth), Requirements())
+    assert outcome.status == "misplaced"
+    assert told_left_out(TruePositions("gps", {}, dict.fromkeys("abcde", "no altitude"))) == (
+        "GPS left out: a (no altitude), b (no altitude), c (no altitude) and 2 more"
+    )
+
+
+def flight(positions: Sequence[GpsPosition | None]) -> Dataset:
+    located = zip(IMAGES, positions, strict=False)
+    images = [Image(name, FileSource(Path(name)), each) for name, each in located]
+    return Dataset("flight", images, [], "epipolar")
+
+
+FLOWN = [GpsPosition(47.6 + i * 2e-4, 9.3 + (i % 2) * 3e-4, 480.0 + i) for i in range(6)]
+
+
+def test_one_far_position_changes_neither_the_extent_nor_the_tolerance() -> None:
+    clean = true_positions(flight(FLOWN[1:]))
+    bent = true_positions(flight([*FLOWN[1:], GpsPosition(47.7, 9.3, 480.0)]))
+    assert clean is not None
+    assert bent is not None
+    assert bent.left_out == {"f": "11.0 km from the others"}
+    assert bent.extent == clean.extent
+    np.testing.assert_array_equal(bent.tolerance(Requirements()), clean.tolerance(Requirements()))
+
+
+def test_too_few_different_positions_are_no_truth() -> None:
+    assert true_positions(flight([None] * 6)) is None
+    for positions in ([FLOWN[0]] * 6, [*FLOWN[:2], None, None, None, None]):
+        truth = true_positions(flight(positions))
+        assert truth is not None
+        assert not truth.known
+        centres = dict(zip(IMAGES, np.eye(6, 3), strict=True))
+        assert locate(centres, truth, Requirements()) is None

@@ -75,7 +75,7 @@ def east_north_up(
     Parameters
     ----------
     positions : sequence of GpsPosition
-        A missing altitude counts as the origin's.
+        A missing altitude counts as the origin's, else as the median of the others.
     origin : GpsPosition, optional
         By default the first position.
 
@@ -87,7 +87,7 @@ def east_north_up(
     if not positions:
         return np.empty((0, 3))
     origin = positions[0] if origin is None else origin
-    ground = origin.altitude or 0.0
+    ground = _ground(positions, origin)
     earth_centred = np.array([_earth_centred(position, ground) for position in positions])
     latitude, longitude = math.radians(origin.latitude), math.radians(origin.longitude)
     sin_lat, cos_lat = math.sin(latitude), math.cos(latitude)
@@ -101,6 +101,13 @@ def east_north_up(
     )
     local: NDArray[np.float64] = (earth_centred - _earth_centred(origin, ground)) @ axes.T
     return local
+
+
+def _ground(positions: Sequence[GpsPosition], origin: GpsPosition) -> float:
+    if origin.altitude is not None:
+        return origin.altitude
+    known = [each.altitude for each in positions if each.altitude is not None]
+    return float(np.median(known)) if known else 0.0
 
 
 def _earth_centred(position: GpsPosition, ground: float) -> NDArray[np.float64]:

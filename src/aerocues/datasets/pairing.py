@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Image
-from aerocues.datasets.gps import east_north_up
 from aerocues.datasets.overlap import Overlapping
+from aerocues.datasets.usable_gps import UsableGps
 from aerocues.errors import DatasetError
 
 Names = tuple[str, str]
@@ -70,6 +70,11 @@ class GpsNeighbours:
         Each image with its nearest neighbours; used if `radius` is None.
     radius : float or None
         All pairs of images within this distance in metres.
+
+    Notes
+    -----
+    An image whose position is missing or cannot be right is placed between its neighbours in the
+    order, if at least half of the positions can be used.
     """
 
     nearest: int = GPS_NEIGHBOURS
@@ -96,13 +101,16 @@ class GpsNeighbours:
 
 
 def _horizontal_positions(images: Sequence[Image]) -> NDArray[np.float64]:
-    missing = [image.name for image in images if image.gps is None]
-    if missing:
+    usable = UsableGps.of([image.gps for image in images])
+    located = usable.horizontal()
+    if located is None:
+        faults = zip(images, usable.in_plan, strict=True)
+        missing = [image.name for image, fault in faults if fault is not None]
         raise DatasetError(
-            f"{len(missing)} of {len(images)} images have no GPS position "
+            f"{len(missing)} of {len(images)} images have no usable GPS position "
             f'({_listed(missing)}); use `pairs="consecutive"` or `pairs="exhaustive"`'
         )
-    return east_north_up([image.gps for image in images if image.gps is not None])[:, :2]
+    return located
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import GpsPosition
-from aerocues.datasets.gps import east_north_up
+from aerocues.datasets.usable_gps import UsableGps
 from aerocues.methods.arrays import Features
 
 NEIGHBOURS = 10
@@ -41,9 +41,9 @@ def candidate_pairs(
     """
     count = len(features)
     found = {(i, i + 1) for i in range(count - 1)}
-    known = [position for position in positions if position is not None]
-    if len(known) == count and count > 2 and len(set(known)) > count // 2:
-        found |= _nearest(east_north_up(known)[:, :2])
+    located = UsableGps.of(positions).horizontal()
+    if located is not None and count > 2 and len(set(positions)) > count // 2:
+        found |= _nearest(located)
     elif count <= MOST_EXHAUSTIVE:
         found |= {(i, j) for i in range(count) for j in range(i + 1, count)}
     else:

@@ -14,7 +14,7 @@ from aerocues.reconstruction.colmap import open_database
 from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.protocol import Requirements
-from aerocues.reconstruction.truth import GPS_IN_PLAN, Located
+from aerocues.reconstruction.truth import GPS_IN_PLAN, Located, TruePositions
 
 # COLMAP's requirements for the initial pair, after relaxing them twice.
 INITIAL_INLIERS = 25
@@ -113,6 +113,19 @@ def told_place(located: Located) -> str:
     )
 
 
+def told_left_out(truth: TruePositions) -> str:
+    """``GPS left out: a (altitude 0), b (5.5 km from the others)``."""
+    listed = [f"{name} ({why})" for name, why in list(truth.left_out.items())[:LISTED]]
+    more = f" and {len(truth.left_out) - LISTED} more" if len(truth.left_out) > LISTED else ""
+    return f"GPS left out: {', '.join(listed)}{more}"
+
+
+def _mostly_far(located: Located, requirements: Requirements) -> bool:
+    """Whether too many of the cameras whose position is known are elsewhere."""
+    allowed = (1 - requirements.registered_share) * len(located.differences)
+    return bool(located.truth.left_out) and len(located.far) > allowed
+
+
 def _heights_left_out(located: Located) -> str:
     heights = root_mean_square(np.array([each[2] for each in located.differences.values()]))
     return (
@@ -145,7 +158,7 @@ def judged(
         return Outcome("incomplete", _incomplete(images, in_model, inliers))
     told = []
     if located is not None and located.far:
-        if len(in_model) - len(located.far) < least:
+        if len(in_model) - len(located.far) < least or _mostly_far(located, requirements):
             what = "the model is bent or wrongly joined"
             return Outcome("misplaced", f"{told_place(located)}; {what}")
         told.append(told_place(located))

@@ -9,13 +9,15 @@ from typing import Any
 
 from aerocues.methods.combination import Combination
 from aerocues.reconstruction.colmap import registered
-from aerocues.reconstruction.diagnosis import Outcome, judged
+from aerocues.reconstruction.diagnosis import Outcome, judged, told_left_out
 from aerocues.reconstruction.exports import export_model, undistort
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.picture import picture_of
 from aerocues.reconstruction.quality import cloud_of, model_figures
 from aerocues.reconstruction.scene import Scene
 from aerocues.reconstruction.truth import (
+    Located,
+    TruePositions,
     centres_of,
     compare_with_truth,
     locate,
@@ -26,7 +28,7 @@ from aerocues.results.whole_files import write_whole
 
 CLOUD = "cloud.npz"
 PICTURE = "picture.png"
-UNKNOWN_PLACE = "whether it is in its place is not known: the cameras lie on a line"
+UNKNOWN_PLACE = "whether it is in its place is not known"
 
 
 def judge(
@@ -62,15 +64,26 @@ def judge(
         located,
         requirements,
     )
-    if truth is not None and located is None:
-        told = "; ".join(filter(None, (outcome.message, UNKNOWN_PLACE)))
-        outcome = replace(outcome, message=told)
+    told = "; ".join(filter(None, (outcome.message, *_told_truth(truth, located))))
+    outcome = replace(outcome, message=told or None)
     folder = scene.place(combination)
     _write(model, scene, folder)
     cloud = cloud_of(model, truth, located)
     title = _title(combination, figures, len(scene.dataset.images), outcome)
     write_whole({folder / CLOUD: cloud.content(), folder / PICTURE: picture_of(cloud, title)})
     return figures, outcome
+
+
+def _told_truth(truth: TruePositions | None, located: Located | None) -> list[str]:
+    """Which positions are left out, and why the place of a model is not known, if it is not."""
+    if truth is None:
+        return []
+    told = [told_left_out(truth)] if truth.left_out else []
+    if not truth.known:
+        told.append(f"{UNKNOWN_PLACE}: fewer than three different positions can be used")
+    elif located is None:
+        told.append(f"{UNKNOWN_PLACE}: the cameras lie on a line")
+    return told
 
 
 def _write(model: Any, scene: Scene, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Opens a scene: pairs by GPS if images have it, else all pairs."""
+"""Opens a scene: pairs by GPS if most images have it, else all pairs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
+from aerocues.datasets.usable_gps import UsableGps
 
 EVERY_PAIR = "exhaustive"
 NEIGHBOURS = "gps"
@@ -25,7 +26,7 @@ def open_scene(
     """Open a dataset to reconstruct it.
 
     Consecutive pairs do not join the strips of a survey. By default images are matched with their
-    GPS neighbours, or with all other images if positions are unknown.
+    GPS neighbours, or with all other images if fewer than half of the positions can be used.
 
     Parameters
     ----------
@@ -48,7 +49,7 @@ def open_scene(
     scene = opened(pairs=pairs)
     if pairs is not None or not _has_choice(scene):
         return scene
-    located = all(image.gps is not None for image in scene.images)
+    located = UsableGps.of([image.gps for image in scene.images]).horizontal() is not None
     chosen = NEIGHBOURS if located else EVERY_PAIR
     return opened(pairs=chosen)
 

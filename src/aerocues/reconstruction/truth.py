@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, TrueView
 from aerocues.datasets.gps import east_north_up
+from aerocues.datasets.usable_gps import UsableGps
 from aerocues.reconstruction.alignment import (
+    FEWEST,
     Similarity,
     extent,
     robust_similarity,
@@ -36,10 +38,18 @@ class TruePositions:
         ``poses``, ``gps``, or ``gps in plan`` where heights are left out.
     by_name : mapping of str to (3,) float64
         Centres in metres: east, north, up.
+    left_out : mapping of str to str
+        Why the positions of other images are not among them, by name.
     """
 
     source: str
     by_name: Mapping[str, Array]
+    left_out: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def known(self) -> bool:
+        """Whether there are enough positions to compare a model with."""
+        return len({tuple(each) for each in self.by_name.values()}) >= FEWEST
 
     @property
     def extent(self) -> float:
@@ -59,7 +69,7 @@ class TruePositions:
         """The same without heights, as if all of them were the same."""
         level = float(np.median([each[2] for each in self.by_name.values()]))
         flat = {name: np.array([each[0], each[1], level]) for name, each in self.by_name.items()}
-        return TruePositions(GPS_IN_PLAN, flat)
+        return TruePositions(GPS_IN_PLAN, flat, self.left_out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,18 +111,19 @@ class Located:
 
 
 def true_positions(dataset: Dataset) -> TruePositions | None:
-    """Known poses, else GPS; None where fewer than three images have a position."""
+    """Known poses, else GPS positions that can be right; None where images have none at all."""
     poses = {image.name: image.truth.centre for image in dataset.images if image.truth}
-    if len(poses) >= 3:
+    if len(poses) >= FEWEST:
         return TruePositions(POSES, poses)
-    located = [image for image in dataset.images if image.gps is not None]
-    if len(located) < 3:
+    images = dataset.images
+    if all(image.gps is None for image in images):
         return None
-    # An altitude that some images lack would count as that of the first.
+    faults = UsableGps.of([image.gps for image in images]).faults
+    left_out = {image.name: why for image, why in zip(images, faults, strict=True) if why}
+    located = [image for image in images if image.gps and image.name not in left_out]
     positions = east_north_up([image.gps for image in located if image.gps])
-    return TruePositions(
-        GPS, {image.name: each for image, each in zip(located, positions, strict=True)}
-    )
+    by_name = {image.name: each for image, each in zip(located, positions, strict=True)}
+    return TruePositions(GPS, by_name, left_out)
 
 
 def centres_of(model: Any) -> dict[str, Array]:
@@ -143,7 +154,7 @@ def locate(
     Located or None
         None where nothing is known or the frame is not determined.
     """
-    if truth is None:
+    if truth is None or not truth.known:
         return None
     found = _locate(centres, truth, requirements)
     if found is None or truth.source != GPS:
