@@ -13,15 +13,18 @@ from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset, Image
 from aerocues.datasets.decoding import FileSource
 from aerocues.errors import ReconstructionError, StoreError
+from aerocues.reconstruction.focal_lengths import (
+    exif_focal_length,
+    told_taken,
+    with_those_of_others,
+)
 from aerocues.reconstruction.images import (
-    Prepared,
     cameras_of,
     prepare_image,
-    read_prepared,
     require_focal_lengths,
-    write_prepared,
 )
 from aerocues.reconstruction.opening import open_scene
+from aerocues.reconstruction.prepared import Prepared, read_prepared, write_prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results
 from aerocues.results.combination_columns import METHODS
@@ -93,6 +96,30 @@ def test_a_focal_length_that_is_not_known_may_be_refined_only(tmp_path: Path) ->
     require_focal_lengths([camera], refined)
     with pytest.raises(ReconstructionError, match=r"2 of 2 .* `focal_length` in pixels"):
         require_focal_lengths([camera], ReconstructionProtocol())
+
+
+def test_an_image_takes_the_focal_length_of_the_others_of_its_camera() -> None:
+    sizes = [(480, 360, 400.0), (360, 480, None), (480, 360, 400.4), (640, 360, None)]
+    prepared = [Prepared(name, *size) for name, size in zip("abcd", sizes, strict=True)]
+    found, names = with_those_of_others(prepared)
+    assert (names, [each.focal_length for each in found]) == (["b"], [400.0, 400.0, 400.4, None])
+    assert told_taken(names, found) == (
+        "focal length: 1 of 4 images takes that of the others from EXIF (400.0 px): b"
+    )
+    two = [*prepared, Prepared("e", 480, 360, 700.0)]
+    assert with_those_of_others(two) == (two, [])
+
+
+@pytest.mark.parametrize("film", [0, 1, 65000])
+def test_a_focal_length_that_cannot_be_right_is_not_known(tmp_path: Path, film: int) -> None:
+    path = photograph(tmp_path / "a.jpg", film=film)
+    assert exif_focal_length(FileSource(path), 120) is None
+
+
+def test_a_focal_length_with_denominator_zero_is_not_known(shared_data: Path) -> None:
+    folder = shared_data.parent / "cases" / "focal_denominator_zero" / "photos"
+    found = {path.name: exif_focal_length(FileSource(path), 100) for path in folder.iterdir()}
+    assert all(each is None or 20 < each < 5000 for each in found.values())
 
 
 def test_prepared_images_are_remembered_until_they_change(tmp_path: Path) -> None:

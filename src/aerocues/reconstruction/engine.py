@@ -13,7 +13,7 @@ from aerocues.errors import AerocuesError
 from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
-from aerocues.reconstruction.images import Prepared
+from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,26 +14,16 @@ from aerocues.datasets.dataset import Dataset, Image, PinholeCamera
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.header import read_header
 from aerocues.errors import ImageError, ReconstructionError
+from aerocues.reconstruction.focal_lengths import exif_focal_length
+from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
-from aerocues.reconstruction.scene import IMAGES, CameraGroup
-from aerocues.results.whole_files import json_content, write_whole
+from aerocues.reconstruction.scene import CameraGroup
 
-LIST = "images.json"
 GUESSED, EXIF = "guessed", "EXIF"
 # Where a focal length is from that a calibration may replace: neither the truth nor a user's own.
 CALIBRATABLE = (GUESSED, EXIF)
 JPEG_QUALITY = 95
 HALF_PIXEL = 0.5
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """The size of the measured image, and its focal length in pixels if EXIF has it."""
-
-    name: str
-    width: int
-    height: int
-    focal_length: float | None
 
 
 def prepare_image(image: Image, folder: Path) -> Prepared:
@@ -57,27 +45,8 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
         raise ImageError(f"cannot write {target}; make room or choose another `output`")
     focal_length = None
     if isinstance(source, FileSource):
-        focal_length = _exif_focal_length(source, max(width, height))
+        focal_length = exif_focal_length(source, max(width, height))
     return Prepared(image.name, width, height, focal_length)
-
-
-def read_prepared(folder: Path, keys: Mapping[str, str]) -> dict[str, Prepared]:
-    """The images that are already in the folder of models and unchanged."""
-    try:
-        stored = json.loads((folder / LIST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return {
-        name: Prepared(**stored[name]["image"])
-        for name, key in keys.items()
-        if name in stored and stored[name]["key"] == key and (folder / IMAGES / name).is_file()
-    }
-
-
-def write_prepared(folder: Path, keys: Mapping[str, str], prepared: Mapping[str, Prepared]) -> None:
-    """Record which images are in the folder; OSError if the disk is full."""
-    listed = {name: {"key": keys[name], "image": asdict(each)} for name, each in prepared.items()}
-    write_whole({folder / LIST: json_content(listed)})
 
 
 def _as_it_is(source: FileSource) -> bool:
@@ -85,19 +54,6 @@ def _as_it_is(source: FileSource) -> bool:
     header = read_header(source.path, str(source.path))
     shrunk = source.max_width is not None and header.size[0] > source.max_width
     return not shrunk and source.equalize == "none" and header.orientation == 1
-
-
-def _exif_focal_length(source: FileSource, longer_side: int) -> float | None:
-    """The focal length that COLMAP reads from EXIF, scaled to the measured size."""
-    import pycolmap
-
-    try:
-        camera = pycolmap.infer_camera_from_image(str(source.path))
-    except (ValueError, RuntimeError):
-        return None  # COLMAP reads no focal length from unknown formats
-    if not camera.has_prior_focal_length:
-        return None
-    return float(camera.mean_focal_length() * longer_side / max(camera.width, camera.height))
 
 
 def cameras_of(
@@ -129,10 +85,12 @@ def require_focal_lengths(cameras: Sequence[CameraGroup], protocol: Reconstructi
     unknown = [name for group in cameras if not group.parameters for name in group.names]
     if unknown and not protocol.refined:
         total = sum(len(group.names) for group in cameras)
+        known = sorted({round(group.parameters[0], 1) for group in cameras if group.parameters})
+        others = f", and the others have {', '.join(map(str, known[:3]))} px" if known else ""
         raise ReconstructionError(
             f"the focal length of {len(unknown)} of {total} images is not known "
-            f"({unknown[0]}, ...); give `focal_length` in pixels, or let the mapper estimate it "
-            'with `intrinsics="refine"`'
+            f"({unknown[0]}, ...){others}; give `focal_length` in pixels, or let the mapper "
+            'estimate it with `intrinsics="refine"`'
         )
 
 

@@ -12,9 +12,9 @@ from aerocues.methods.combination import Combination
 from aerocues.notebooks import as_html
 from aerocues.phrases import count
 from aerocues.reconstruction.exports import MODEL
-from aerocues.reconstruction.images import LIST
 from aerocues.reconstruction.judging import CLOUD, PICTURE
 from aerocues.reconstruction.one_model import OUTCOME
+from aerocues.reconstruction.prepared import LIST
 from aerocues.reconstruction.scene import FEATURES, IMAGES
 from aerocues.results.clouds import Cloud, read_cloud
 from aerocues.results.combination_columns import combination_name

@@ -156,7 +156,7 @@ class _Reconstruction:
         told = told_calibration(groups, found)
         self._calibration = {"cameras": found, "message": told}
         self._scene = replace(self._scene, cameras=with_calibrated(groups, found))
-        self._tell.calibrated(told)
+        self._tell.note(told)
 
     def _made(self, combinations: list[Combination]) -> Iterator[tuple[Combination, Row]]:
         scene, limits = self._scene, self._limits

@@ -61,8 +61,8 @@ class ReconstructionProgress:
         """COLMAP's default cannot be made with this version of it."""
         self._making.tell(message=f"no row of COLMAP's default: {reason}")
 
-    def calibrated(self, message: str) -> None:
-        """Whether the intrinsics of all models are calibrated, or why not."""
+    def note(self, message: str) -> None:
+        """Report what concerns all models, such as whether their intrinsics are calibrated."""
         self._making.tell(message=message)
 
 

@@ -15,8 +15,10 @@ from aerocues.methods.strongest import limited
 from aerocues.pipeline.feature_folder import checked_folder
 from aerocues.reconstruction.colmap import colmap_version
 from aerocues.reconstruction.engine import ReconstructionLimits, prepare_images
-from aerocues.reconstruction.images import cameras_of, read_prepared, write_prepared
+from aerocues.reconstruction.focal_lengths import told_taken, with_those_of_others
+from aerocues.reconstruction.images import cameras_of
 from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.prepared import read_prepared, write_prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
 from aerocues.reconstruction.scene import FEATURES, Scene
@@ -116,4 +118,7 @@ def with_cameras(scene: Scene, limits: ReconstructionLimits, tell: Reconstructio
         known[each.name] = each
     write_prepared(scene.folder, scene.image_keys, known)
     prepared = [known[image.name] for image in scene.dataset.images]
+    prepared, taken = with_those_of_others(prepared)
+    if taken and scene.protocol.focal_length is None:
+        tell.note(told_taken(taken, prepared))
     return replace(scene, cameras=cameras_of(scene.dataset, prepared, scene.protocol))
