@@ -23,6 +23,7 @@ class AsMeasured:
     ----------
     images : str
     pairs, subset : str or None
+    band : int or None
     equalize : str
     max_width : int
         0 for the full size.
@@ -37,6 +38,7 @@ class AsMeasured:
     images: str
     pairs: str | None
     subset: str | None
+    band: int | None
     equalize: str
     max_width: int
     preset: str
@@ -55,6 +57,7 @@ class AsMeasured:
         options = (
             ("--pairs", self.pairs, None),
             ("--subset", self.subset, None),
+            ("--band", self.band, None),
             ("--equalize", self.equalize, "none"),
             ("--max-width", self.max_width, 0),
             ("--preset", self.preset, "default"),

@@ -93,6 +93,12 @@ SubsetOption = Annotated[
         metavar="GLOBS", help="Use only these images or folders, such as 'Layer3/pitch-90_yaw0'."
     ),
 ]
+BandOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1, metavar="N", help="Band of multispectral images, 1 to the number of bands."
+    ),
+]
 SequencesOption = Annotated[
     str | None,
     typer.Option(metavar="GLOBS", help="Use only these sequences, such as 'graf,b*'."),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from aerocues.cli.options import (
+    BandOption,
     CombinationsOption,
     DatasetArgument,
     EqualizeOption,
@@ -86,6 +87,7 @@ def recommend(
         int, typer.Option(min=2, metavar="N", help="Maximum number of representative pairs.")
     ] = RACE_PAIRS,
     subset: SubsetOption = None,
+    band: BandOption = None,
     equalize: EqualizeOption = "none",
     sure: Annotated[
         float,
@@ -114,7 +116,7 @@ def recommend(
 
     with interruptible():
         images = aerocues.open_dataset(
-            dataset, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset
+            dataset, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset, band=band
         )
         with display() as tally:
             found = aerocues.recommend(
@@ -135,7 +137,7 @@ def recommend(
                 progress=tally,
             )
         _print(found, top, explain=explain)
-        opened = (dataset, pairs, subset, equalize, _shrunk(images, max_width))
+        opened = (dataset, pairs, subset, band, equalize, _shrunk(images, max_width))
         same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()))
         _print_next(found, same)
         if report is not None:

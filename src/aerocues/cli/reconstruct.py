@@ -12,6 +12,7 @@ import typer
 from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
+    BandOption,
     CombinationsOption,
     EqualFootingOption,
     MaxKeypointsOption,
@@ -75,6 +76,7 @@ def reconstruct(
     ] = None,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
+    band: BandOption = None,
     sequences: SequencesOption = None,
     max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
     max_width: MaxWidthOption = None,
@@ -158,6 +160,7 @@ def reconstruct(
             equalize=equalize,
             sequences=sequences,
             subset=subset,
+            band=band,
         )
         with display() as tally:
             models = aerocues.reconstruct(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from aerocues.cli.options import (
+    BandOption,
     CombinationsOption,
     DatasetArgument,
     DescriptorsOption,
@@ -76,6 +77,7 @@ def run(
     ] = False,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
+    band: BandOption = None,
     max_pairs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Use only the first N pairs.")
     ] = None,
@@ -142,6 +144,7 @@ def run(
             max_pairs=max_pairs,
             sequences=sequences,
             subset=subset,
+            band=band,
         )
         arguments: dict[str, Any] = {
             "dataset": images,

@@ -32,6 +32,7 @@ def open_dataset(
     max_pairs: int | None = None,
     sequences: str | Sequence[str] | None = None,
     subset: str | None = None,
+    band: int | None = None,
 ) -> Dataset:
     """Open images to measure on.
 
@@ -58,6 +59,9 @@ def open_dataset(
         Use only the images whose name or folder, relative to the dataset's, matches one of these
         globs, separated by commas: ``Layer3/pitch-90_yaw0``; only for kinds without pairs of their
         own.
+    band : int, optional
+        The band of multispectral images, from 1 on: in files of several bands, or among files of
+        one band each; of colour images 1 is red, 2 green and 3 blue.
 
     Returns
     -------
@@ -74,7 +78,7 @@ def open_dataset(
     if max_pairs is not None:
         check_whole("max_pairs", max_pairs, 1)
     max_width = max_width or None
-    options = Options(pairs, max_width, equalize, subset)
+    options = Options(pairs, max_width, equalize, subset, band)
     if isinstance(spec, str | Path):
         kind, target = _parse(str(spec))
         _check_pairs(kind, options)
@@ -92,6 +96,7 @@ def open_dataset(
         max_pairs=max_pairs,
         sequences=names,
         subset=subset,
+        band=band,
     )
     return replace(_restricted(opened, max_pairs, sequences), source=source)
 

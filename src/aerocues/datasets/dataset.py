@@ -160,7 +160,7 @@ class Source:
     ----------
     spec : str
         Text form of the dataset, with an absolute path.
-    pairs, max_width, equalize, max_pairs, sequences, subset
+    pairs, max_width, equalize, max_pairs, sequences, subset, band
         See `open_dataset`; the names of sequences as one text.
     """
 
@@ -171,6 +171,7 @@ class Source:
     max_pairs: int | None = None
     sequences: str | None = None
     subset: str | None = None
+    band: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +187,7 @@ class Dataset:
     geometry : {"homography", "epipolar"}
         What relates two images: a homography (plane or rotation) or epipolar geometry.
     settings : tuple of (str, str)
-        How the dataset was made: pairs, size, equalisation.
+        How the dataset was made: pairs, size, equalisation, range of values.
     source : Source or None
         How to open it again, if known; no measurement depends on it.
     """

@@ -10,12 +10,13 @@ from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Pixels
 from aerocues.datasets.fitting import check_settings, equalize_luminance, fitted_size, shrink
 from aerocues.datasets.header import Header, read_header, unreadable
-from aerocues.datasets.integrity import find_damage
+from aerocues.datasets.levels import Levels, robust_levels
+from aerocues.datasets.stored_values import REDUCED, StoredValues, UndecodableError, stored_values
+from aerocues.datasets.tiff import is_first
 from aerocues.errors import ImageError
 
 PIXEL_LIMIT = 250_000_000
@@ -24,12 +25,8 @@ PIXEL_LIMIT = 250_000_000
 DECODING_VERSION = "1"
 """Part of content keys; increased when decoding gives other pixels for the same file."""
 
-_SENSOR_WHITES = tuple(2**bits - 1 for bits in (8, 10, 12, 14, 16))
-_REDUCED = {
-    2: cv2.IMREAD_REDUCED_COLOR_2,
-    4: cv2.IMREAD_REDUCED_COLOR_4,
-    8: cv2.IMREAD_REDUCED_COLOR_8,
-}
+VALUES_VERSION = "1"
+"""The same for files with more than 8 bits, several bands or several pages."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +44,11 @@ class FileSource:
         ``none``, ``histogram`` or ``clahe``.
     pixel_limit : int
         Images with more pixels are refused.
+    band : int or None
+        The band of a multispectral file, or the colour (red, green, blue), to take, from 1 on.
+    levels : Levels or None
+        The values that become 0 and 255 where the file has more than 8 bits; None: a robust range
+        of its own values.
 
     Raises
     ------
@@ -58,6 +60,8 @@ class FileSource:
     max_width: int | None = None
     equalize: str = "none"
     pixel_limit: int = PIXEL_LIMIT
+    band: int | None = None
+    levels: Levels | None = None
 
     def __post_init__(self) -> None:
         check_settings(self.max_width, self.equalize)
@@ -68,25 +72,30 @@ class FileSource:
         Returns
         -------
         Pixels
-            At its final size. Fully transparent (alpha 0) and non-finite pixels are black and not
-            valid; otherwise alpha is ignored (in 8-bit TIFF, partly transparent pixels are blended
-            with black).
+            At its final size. Fully transparent (alpha 0) and non-finite pixels, and those with
+            GDAL's value of no data, are black and not valid; otherwise alpha is ignored (in 8-bit
+            TIFF, partly transparent pixels are blended with black).
 
         Raises
         ------
         ImageError
             If the file cannot be read, is not an image, is truncated or damaged, or is too large.
         """
-        data = self._bytes()
-        header = read_header(data, str(self.path))
-        factor = self._reduction(header)
-        damage = find_damage(data, header.format)
-        decoded = None if damage else _decode(data, header, factor)
-        if decoded is None:
-            reason = damage or "it is truncated, damaged or of an unsupported kind"
-            raise ImageError(f"{self.path} cannot be decoded: {reason}; copy or export it again")
-        pixels = _eight_bits(_oriented(decoded, header))
+        pixels = _eight_bits(self.stored(), self.levels)
         return equalize_luminance(shrink(pixels, self.max_width), self.equalize)
+
+    def stored(self) -> StoredValues:
+        """The values in the file, of any type; see `read`."""
+        data = self._bytes()
+        header = self.header(data)
+        try:
+            return stored_values(data, header, reduction=self._reduction(header), band=self.band)
+        except UndecodableError as error:
+            raise ImageError(f"{self.path} cannot be decoded: {error}") from error
+
+    def header(self, data: bytes | None = None) -> Header:
+        """The header of the file, or of its content; ImageError if it cannot be read."""
+        return read_header(self.path if data is None else data, str(self.path))
 
     def size(self) -> tuple[int, int]:
         """Width and height of the image that `read` returns, from the header alone.
@@ -100,7 +109,7 @@ class FileSource:
 
     def original_size(self) -> tuple[int, int]:
         """Width and height of the image in the file, upright."""
-        return read_header(self.path, str(self.path)).size
+        return self.header().size
 
     def is_gray(self) -> bool:
         """Whether the file has a single channel; False if the header cannot be read.
@@ -108,9 +117,24 @@ class FileSource:
         A broken file is an error of its pairs, raised by `read`, not of the dataset.
         """
         try:
-            return read_header(self.path, str(self.path)).gray
+            header = self.header()
         except ImageError:
             return False
+        return header.gray or self.band is not None
+
+    def is_plain(self, data: bytes | None = None) -> bool:
+        """Whether every reader sees the same image: 8 bits, one page, all of it content.
+
+        Raises
+        ------
+        ImageError
+            If the header cannot be read.
+        """
+        data = self._bytes() if data is None else data
+        header = self.header(data)
+        if header.sample_type != "uint8" or self.band is not None:
+            return False
+        return all(is_first(data, page) and page.nodata is None for page in header.pages[:1])
 
     def __getstate__(self) -> dict[str, object]:
         """Without the hash: on another machine the file may differ."""
@@ -122,9 +146,20 @@ class FileSource:
 
     @cached_property
     def _content_key(self) -> str:
-        digest = hashlib.sha256(self._bytes())
+        data = self._bytes()
+        digest = hashlib.sha256(data)
         digest.update(f"|{DECODING_VERSION}|{self.max_width}|{self.equalize}".encode())
+        digest.update(self._variant(data).encode())
         return digest.hexdigest()
+
+    def _variant(self, data: bytes) -> str:
+        """How files that are not plain are read; empty for those that are."""
+        try:
+            if self.is_plain(data):
+                return ""
+        except ImageError:
+            return ""
+        return f"|{VALUES_VERSION}|{self.band}|{self.levels!r}"
 
     def _bytes(self) -> bytes:
         try:
@@ -142,7 +177,7 @@ class FileSource:
         )
         if header.format != "JPEG":
             raise ImageError(message + "shrink it or cut it into tiles")
-        fitting = [n for n in _REDUCED if header.pixels / n**2 <= self.pixel_limit]
+        fitting = [n for n in REDUCED if header.pixels / n**2 <= self.pixel_limit]
         if not fitting:
             raise ImageError(message + "cut it into tiles")
         widest = header.size[0] // fitting[0]
@@ -151,72 +186,16 @@ class FileSource:
         return fitting[0]
 
 
-def _decode(data: bytes, header: Header, factor: int) -> Any:
-    """Pixels as stored, decoded by OpenCV; None if that fails."""
-    if header.format == "JPEG":
-        flag = _REDUCED.get(factor, cv2.IMREAD_COLOR) | cv2.IMREAD_IGNORE_ORIENTATION
-    elif header.mode == "CMYK":  # its four channels would be read as colour and alpha
-        flag = cv2.IMREAD_COLOR
-    else:
-        flag = cv2.IMREAD_UNCHANGED
-    try:
-        return cv2.imdecode(np.frombuffer(data, np.uint8), flag)
-    except cv2.error:
-        return None
-
-
-def _oriented(stored: Any, header: Header) -> Any:
-    """Apply the EXIF orientation (OpenCV does so itself for TIFF)."""
-    if header.format == "TIFF":
-        return stored
-    if header.orientation >= 5:
-        stored = cv2.transpose(stored)
-    # After the transposition: 2, 7, 3, 6 are mirrored left-right; 4, 3, 7, 8 upside down.
-    if header.orientation in (2, 3, 6, 7):
-        stored = cv2.flip(stored, 1)
-    if header.orientation in (3, 4, 7, 8):
-        stored = cv2.flip(stored, 0)
-    return stored
-
-
-def _eight_bits(decoded: NDArray[Any]) -> Pixels:
-    values, valid = _split_alpha(decoded)
-    if values.dtype == np.uint16:
-        values = cv2.convertScaleAbs(values, alpha=255.0 / _full_scale(values))
-    elif values.dtype != np.uint8:
-        values, finite = _stretched(values)
-        valid = finite if valid is None else valid & finite
+def _eight_bits(stored: StoredValues, levels: Levels | None) -> Pixels:
+    values, valid = stored.values, stored.valid
+    if values.dtype != np.uint8:
+        if not np.issubdtype(values.dtype, np.integer):
+            finite = np.isfinite(values)
+            finite = finite if finite.ndim == 2 else finite.all(axis=2)
+            valid = finite if valid is None else valid & finite
+        values = (levels or robust_levels(stored.finite)).scaled(values)
     bgr: Any = values if values.ndim == 3 else cv2.cvtColor(values, cv2.COLOR_GRAY2BGR)
     if valid is None or bool(valid.all()):
         return Pixels(bgr)
     bgr = np.where(valid[..., np.newaxis], bgr, np.uint8(0))
     return Pixels(bgr, valid)
-
-
-def _split_alpha(decoded: NDArray[Any]) -> tuple[Any, NDArray[np.bool_] | None]:
-    if decoded.ndim == 2:
-        return decoded, None
-    channels = decoded.shape[2]
-    if channels in (1, 2):
-        return np.ascontiguousarray(decoded[..., 0]), decoded[..., 1] > 0 if channels == 2 else None
-    valid = decoded[..., 3] > 0 if channels == 4 else None
-    return np.ascontiguousarray(decoded[..., :3]), valid
-
-
-def _full_scale(values: NDArray[np.uint16]) -> int:
-    """White level of a 16-bit image: that of the smallest bit depth (8 to 16) that contains it.
-
-    Cameras store 10, 12 or 14 bits in 16-bit files, which would be nearly black if divided by 256.
-    """
-    highest = int(values.max())
-    return next(white for white in _SENSOR_WHITES if highest <= white)
-
-
-def _stretched(values: NDArray[Any]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """Floating point and wide integers have no white level: scaled from minimum to maximum."""
-    wide = values.astype(np.float32)
-    finite: NDArray[np.bool_] = np.isfinite(wide)
-    low, high = (wide[finite].min(), wide[finite].max()) if finite.any() else (0.0, 1.0)
-    scaled = (np.where(finite, wide, low) - low) * (255.0 / max(float(high - low), 1e-12))
-    usable: NDArray[np.bool_] = finite if finite.ndim == 2 else np.all(finite, axis=2)
-    return np.rint(scaled).astype(np.uint8), usable

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset, Image, Pair
-from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.file_sources import file_sources, told_levels
 from aerocues.datasets.gps import read_gps
 from aerocues.datasets.header import SUFFIXES
 from aerocues.datasets.options import Options
@@ -61,7 +61,7 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
     Raises
     ------
     DatasetError
-        If the subset of the options has no file.
+        If the subset of the options has no file, or a band must be chosen.
     """
     names = {path.relative_to(root).as_posix(): path for path in paths}
     chosen = {name: path for name, path in names.items() if options.takes(name)}
@@ -71,14 +71,9 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
         raise DatasetError(
             f'no image of {root} is in `subset="{options.subset}"`; there are: {shown}'
         )
-    return [
-        Image(
-            name,
-            FileSource(path.absolute(), options.max_width, options.equalize),
-            read_gps(path),
-        )
-        for name, path in chosen.items()
-    ]
+    named = {path.absolute(): name for name, path in chosen.items()}
+    sources = file_sources(list(chosen.values()), options, root)
+    return [Image(named[source.path], source, read_gps(source.path)) for source in sources]
 
 
 def chosen_pairs(options: Options) -> tuple[PairStrategy, str]:
@@ -144,7 +139,16 @@ def folder_images(folder: Path, options: Options, *, tree: bool = False) -> list
 
 def _one_scene(folder: Path, images: Sequence[Image], options: Options) -> Dataset:
     strategy, text = chosen_pairs(options)
-    return scene_of(folder, images, strategy.pairs(images), options.settings(pairs=text))
+    settings = settings_of(images, options, pairs=text)
+    return scene_of(folder, images, strategy.pairs(images), settings)
+
+
+def settings_of(
+    images: Sequence[Image], options: Options, **more: str
+) -> tuple[tuple[str, str], ...]:
+    """How images are read, for `Dataset.settings`: options, and the range of their values."""
+    values = told_levels(image.source for image in images)
+    return options.settings(**more, **({"values": values} if values else {}))
 
 
 def scene_of(

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import IO, Any, TypeVar
 
+from aerocues.datasets.integrity import without_text
+from aerocues.datasets.tiff import (
+    CMYK,
+    MIN_IS_WHITE,
+    PALETTE,
+    PHOTOMETRIC,
+    Page,
+    all_pages,
+    main_pages,
+)
+from aerocues.datasets.webp import read_webp
 from aerocues.errors import ImageError
 
 SUFFIXES = frozenset(
@@ -25,7 +38,6 @@ _SIGNATURES = (
 )
 _GRAY_MODES = frozenset({"1", "L", "LA", "La", "F"})
 _ORIENTATION = 274
-_TIFF_WIDTH, _TIFF_HEIGHT = 256, 257
 
 
 @dataclass(frozen=True)
@@ -42,6 +54,10 @@ class Header:
         Pixels as stored, before the orientation is applied.
     orientation : int
         EXIF orientation, 1 to 8.
+    sample_type : str
+        Type of the stored values, such as ``uint8``, ``uint16`` or ``float32``.
+    pages : tuple of Page
+        Of a TIFF file: those of full size.
     """
 
     format: str
@@ -49,6 +65,8 @@ class Header:
     stored_width: int
     stored_height: int
     orientation: int = 1
+    sample_type: str = "uint8"
+    pages: tuple[Page, ...] = ()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -61,6 +79,11 @@ class Header:
     def pixels(self) -> int:
         """Number of pixels."""
         return self.stored_width * self.stored_height
+
+    @property
+    def bands(self) -> int:
+        """Bands to choose from: pages of the same size, or bands of a page that are no colours."""
+        return len(self.pages) if len(self.pages) > 1 else self.pages[0].bands if self.pages else 1
 
     @property
     def gray(self) -> bool:
@@ -87,7 +110,7 @@ def read_exif_directory(file: Path, directory: int) -> dict[int, Any]:
 
     def parse(stream: IO[bytes]) -> dict[int, Any]:
         # Read while the file is open: TIFF reads its tags on access.
-        return dict(_exif(_open(stream)[1]).get_ifd(directory))
+        return dict(_open(stream).exif.get_ifd(directory))
 
     return _read(file, str(file), parse)
 
@@ -97,13 +120,17 @@ _Result = TypeVar("_Result")
 
 def _read(file: Path | bytes, name: str, parse: Callable[[IO[bytes]], _Result]) -> _Result:
     try:
-        with BytesIO(file) if isinstance(file, bytes) else file.open("rb") as stream:
+        with (
+            BytesIO(file) if isinstance(file, bytes) else file.open("rb") as stream,
+            warnings.catch_warnings(),
+        ):
+            warnings.simplefilter("ignore")  # of Pillow: what matters is told when it is decoded
             return parse(stream)
     except OSError as error:
         if isinstance(file, Path) and error.errno is not None:
             raise ImageError(unreadable(name, error)) from error
         raise _not_an_image(name) from error
-    except (SyntaxError, ValueError, KeyError, IndexError, TypeError, EOFError) as error:
+    except Exception as error:  # Pillow's readers may raise anything on bytes that are damaged
         raise _not_an_image(name) from error
 
 
@@ -120,32 +147,92 @@ def _not_an_image(name: str) -> ImageError:
     )
 
 
+@dataclass(frozen=True)
+class _Opened:
+    """What Pillow, or an own reader, finds before any pixel."""
+
+    format: str
+    mode: str
+    size: tuple[int, int]
+    exif: Any
+    pages: tuple[Page, ...] = ()
+
+
 def _parse(stream: IO[bytes]) -> Header:
-    name, image = _open(stream)
-    if name == "TIFF":
-        width, height = image.tag_v2[_TIFF_WIDTH], image.tag_v2[_TIFF_HEIGHT]
-        orientation = image.tag_v2.get(_ORIENTATION, 1)
-    else:
-        width, height = image.size
-        orientation = _exif(image).get(_ORIENTATION, 1)
-    valid = isinstance(orientation, int) and 1 <= orientation <= 8
-    return Header(name, image.mode, int(width), int(height), orientation if valid else 1)
+    opened = _open(stream)
+    orientation = opened.exif.get(_ORIENTATION, 1)
+    if not isinstance(orientation, int) or not 1 <= orientation <= 8:
+        orientation = 1
+    sample_type = (
+        opened.pages[0].sample_type if opened.pages else _sample_type(stream, opened.format)
+    )
+    return Header(opened.format, opened.mode, *opened.size, orientation, sample_type, opened.pages)
 
 
-def _open(stream: IO[bytes]) -> tuple[str, Any]:
-    """The format and Pillow's reader, after reading the header only."""
-    name = _format(stream.read(16))
-    stream.seek(0)
-    # Readers are called directly: Image.open refuses images above a size in global state, and opens
-    # some camera JPEGs as a series of images.
-    return name, _reader(name)(stream)
-
-
-def _exif(image: Any) -> Any:
+def _open(stream: IO[bytes]) -> _Opened:
+    """Format, size and EXIF data, after reading the header only."""
     from PIL import Image
 
+    name = _format(stream.read(16))
+    stream.seek(0)
+    if name == "TIFF":
+        return _open_tiff(stream)
+    if name == "WEBP":
+        mode, size, information = read_webp(stream)
+        image: Any = Image.Image()
+        image.info = information
+    else:
+        image = _opened_by_pillow(name, stream)
+        mode, size = image.mode, image.size
     # Not image.getexif(): for PNG it decodes all pixels to find EXIF behind them.
-    return Image.Image.getexif(image)
+    return _Opened(name, mode, size, Image.Image.getexif(image))
+
+
+def _opened_by_pillow(name: str, stream: IO[bytes]) -> Any:
+    # Readers are called directly: Image.open refuses images above a size in global state, and opens
+    # some camera JPEGs as a series of images.
+    try:
+        return _reader(name)(stream)
+    except ValueError:
+        if name != "PNG":
+            raise
+        # Pillow has a limit of compressed text, which is of no use here.
+        stream.seek(0)
+        return _reader(name)(BytesIO(without_text(stream.read())))
+
+
+def _open_tiff(stream: IO[bytes]) -> _Opened:
+    from PIL import Image
+
+    pages = main_pages(all_pages(stream))
+    exif: Any = Image.Exif()
+    stream.seek(0)
+    start = stream.read(4)
+    exif.endian, exif.bigtiff = "<" if start[:2] == b"II" else ">", b"+" in start
+    exif.load_from_fp(stream, pages[0].offset)
+    return _Opened("TIFF", _mode(pages[0]), pages[0].size, exif, tuple(pages))
+
+
+def _mode(page: Page) -> str:
+    """Pillow's name of the pixel format, as far as it matters here."""
+    photometric = page.number(PHOTOMETRIC, 1)
+    if photometric == CMYK and page.sample_type == "uint8":
+        return "CMYK"
+    if photometric in (MIN_IS_WHITE, 1):
+        return "L"
+    return "P" if photometric == PALETTE else "RGB"
+
+
+def _sample_type(stream: IO[bytes], name: str) -> str:
+    """Pillow reads 16-bit colours as if they had 8 bits."""
+    stream.seek(0)
+    start = stream.read(512)
+    if name == "PNG":
+        return "uint16" if start[24] == 16 else "uint8"
+    if name == "PPM" and start[:2] in (b"P2", b"P3", b"P5", b"P6"):
+        numbers = re.sub(rb"#[^\n]*", b"", start[2:]).split()
+        return "uint16" if int(numbers[2]) > 255 else "uint8"
+    return "uint8"
 
 
 def _format(start: bytes) -> str:
@@ -161,16 +248,12 @@ def _reader(name: str) -> Any:
         JpegImagePlugin,
         PngImagePlugin,
         PpmImagePlugin,
-        TiffImagePlugin,
-        WebPImagePlugin,
     )
 
     readers = {
         "JPEG": JpegImagePlugin.JpegImageFile,
         "PNG": PngImagePlugin.PngImageFile,
-        "TIFF": TiffImagePlugin.TiffImageFile,
         "BMP": BmpImagePlugin.BmpImageFile,
-        "WEBP": WebPImagePlugin.WebPImageFile,
         "PPM": PpmImagePlugin.PpmImageFile,
     }
     return readers[name]

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.file_sources import file_sources
 from aerocues.datasets.fitting import fitted_size, scale_matrix
-from aerocues.datasets.folder import image_paths, subfolders
+from aerocues.datasets.folder import image_paths, settings_of, subfolders
 from aerocues.datasets.options import Options
 from aerocues.errors import DatasetError, ImageError
 
@@ -73,7 +74,7 @@ def _open(layout: Layout, folder: Path, options: Options) -> Dataset:
         own = _sequence(layout, sequence, options)
         images += own[0]
         pairs += [Pair(len(pairs) + i, *fields) for i, fields in enumerate(own[1])]
-    settings = options.settings(pairs="first with each other")
+    settings = settings_of(images, options, pairs="first with each other")
     return Dataset(layout.name, images, pairs, "homography", settings)
 
 
@@ -96,11 +97,10 @@ def _sequence(
     if 1 not in paths or len(paths) < 2:
         raise DatasetError(f"the sequence {folder} needs image 1 and others; download it again")
     name = folder.resolve().name
+    sources = file_sources(list(paths.values()), options, folder)
     images = {
-        number: Image(
-            f"{name}/{path.name}", FileSource(path.absolute(), options.max_width, options.equalize)
-        )
-        for number, path in paths.items()
+        number: Image(f"{name}/{path.name}", source)
+        for (number, path), source in zip(paths.items(), sources, strict=True)
     }
     scales = {number: _scale(image) for number, image in images.items()}
     pairs = []

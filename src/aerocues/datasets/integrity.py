@@ -1,6 +1,7 @@
 """Finds truncated or damaged files by their structure, without decoding them.
 
-OpenCV fills the missing part of a truncated JPEG or PNG with gray, without an error.
+OpenCV fills the missing part of a truncated JPEG or PNG with gray, without an error. What libjpeg
+and libtiff complain of, they write to the standard error.
 """
 
 from __future__ import annotations
@@ -11,6 +12,12 @@ import zlib
 _NEXT_MARKER = re.compile(rb"\xff[\x01-\xcf\xd8-\xfe]")
 _END_OF_IMAGE = 0xD9
 _START_OF_SCAN = 0xDA
+_COMPLAINTS = re.compile(
+    rb"(Corrupt JPEG data: .*|Premature end of JPEG.*|Inconsistent progression.*"
+    rb"|Invalid SOS parameters.*|Unsupported marker type.*)|TIFF_Error (.*)"
+)
+_EXTRANEOUS = re.compile(rb"Corrupt JPEG data: (\d+) extraneous bytes before marker 0xd9")
+MOST_PADDING = 64
 _WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD9)})
 
 
@@ -30,6 +37,32 @@ def find_damage(data: bytes, image_format: str) -> str | None:
     if image_format == "PNG":
         return _png_damage(data)
     return None
+
+
+def find_complaint(written: bytes, data: bytes) -> str | None:
+    """What a decoder complained of, or None.
+
+    Parameters
+    ----------
+    written : bytes
+        What it wrote to the standard error.
+    data : bytes
+        The whole file. Some cameras fill up the image data with a few equal bytes, which is no
+        damage.
+    """
+    for found in _COMPLAINTS.finditer(written):
+        padded = _EXTRANEOUS.match(found[0])
+        if padded is None or not _is_padding(data, int(padded[1])):
+            text = (found[1] or found[2]).decode("ascii", "replace").strip()
+            return f"it is damaged ({text})"
+    return None
+
+
+def _is_padding(data: bytes, count: int) -> bool:
+    """Whether an end marker follows so many equal bytes."""
+    if count > MOST_PADDING:
+        return False
+    return any(bytes([value]) * count + b"\xff\xd9" in data for value in (0, 0xFF))
 
 
 def _jpeg_damage(data: bytes) -> str | None:
@@ -60,3 +93,14 @@ def _png_damage(data: bytes) -> str | None:
             return f"it is damaged (checksum of chunk {kind.decode('latin-1')})"
         position = end + 4
     return "it is truncated (no end of image)"
+
+
+def without_text(data: bytes) -> bytes:
+    """A PNG file without its chunks of compressed text."""
+    kept, position = [data[:8]], 8
+    while position + 12 <= len(data):
+        end = position + 12 + int.from_bytes(data[position : position + 4], "big")
+        if data[position + 4 : position + 8] not in (b"zTXt", b"iTXt"):
+            kept.append(data[position:end])
+        position = end
+    return b"".join(kept)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, TrueView
 from aerocues.datasets.fitting import fitted_size, scale_matrix
 from aerocues.datasets.flight_angles import ENU_FROM_NED, camera_from_ned
-from aerocues.datasets.folder import chosen_pairs, folder_images, scene_of
+from aerocues.datasets.folder import chosen_pairs, folder_images, scene_of, settings_of
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import Consecutive
 from aerocues.errors import DatasetError, ImageError
@@ -108,7 +108,7 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         raise DatasetError(
             f'{folder} holds one image a view; use `pairs="exhaustive"` or `pairs="overlap:0.3"`'
         )
-    return scene_of(folder, images, pairs, options.settings(pairs=text))
+    return scene_of(folder, images, pairs, settings_of(images, options, pairs=text))
 
 
 def _by_folder(images: Sequence[Image]) -> list[list[Image]]:

@@ -172,9 +172,9 @@ def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic"
     DatasetError
         If the image is missing or its header cannot be read.
     """
-    plain = _source(image, options.max_width, "none")
+    plain = _source(image, options, "none")
     size = plain.size()
-    images = [Image(ORIGINAL, _source(image, options.max_width, options.equalize))]
+    images = [Image(ORIGINAL, _source(image, options, options.equalize))]
     pairs = []
     for index, row in enumerate(SETS[kind]):
         source: ImageSource = TransformedSource(plain, row.name, options.equalize)
@@ -189,9 +189,9 @@ def open_synthetic(image: Path | None, options: Options, kind: str = "synthetic"
     return Dataset(kind, images, pairs, "homography", settings)
 
 
-def _source(image: Path | None, max_width: int | None, equalize: str) -> TownSource | FileSource:
+def _source(image: Path | None, options: Options, equalize: str) -> TownSource | FileSource:
     if image is None:
-        return TownSource(max_width, equalize)
+        return TownSource(options.max_width, equalize)
     if image.is_dir():
         raise DatasetError(f"{image} is a folder; give one image: synthetic:IMAGE")
-    return FileSource(image.absolute(), max_width, equalize)
+    return FileSource(image.absolute(), options.max_width, equalize, band=options.band)

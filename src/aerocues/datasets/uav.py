@@ -5,7 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset, Image, Pair
-from aerocues.datasets.folder import chosen_pairs, file_images, image_paths, subfolders
+from aerocues.datasets.folder import (
+    chosen_pairs,
+    file_images,
+    image_paths,
+    settings_of,
+    subfolders,
+)
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import PairsFile
 from aerocues.errors import DatasetError
@@ -33,7 +39,7 @@ def open_uav(folder: Path, options: Options) -> Dataset:
         Pair(index, first, second, first.partition("/")[0])
         for index, (first, second) in enumerate(names)
     ]
-    return Dataset("uav", images, pairs, "epipolar", options.settings(pairs=text))
+    return Dataset("uav", images, pairs, "epipolar", settings_of(images, options, pairs=text))
 
 
 def _projects(folder: Path, options: Options) -> dict[str, list[Image]]:

@@ -200,12 +200,13 @@ def open_as_measured(
     equalize: str | None = None,
     sequences: str | None = None,
     subset: str | None = None,
+    band: int | None = None,
 ) -> Dataset:
     """The scene, read as results of it were measured where nothing else is asked for.
 
     Parameters
     ----------
-    dataset, pairs, max_width, equalize, sequences, subset
+    dataset, pairs, max_width, equalize, sequences, subset, band
         As `aerocues.open_dataset` takes them, so that a `max_width` of 0 is for images as they are
         whatever the results were measured on; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
@@ -213,6 +214,8 @@ def open_as_measured(
     """
     measured = settings_of_results(results)
     width = measured.get("max_width", "full")
+    if band is None and "band" in measured:
+        band = int(measured["band"])
     if max_width is None and width != "full":
         max_width = int(width)
     return open_scene(
@@ -222,6 +225,7 @@ def open_as_measured(
         equalize=equalize or measured.get("equalize", "none"),
         sequences=sequences,
         subset=subset or measured.get("subset"),
+        band=band,
     )
 
 
@@ -234,11 +238,11 @@ def best_combinations(results: Results, dataset: str, top: int) -> list[str]:
 
 
 def settings_of_results(results: Results | None) -> dict[str, str]:
-    """How images of results were read: ``max_width``, ``equalize`` and ``subset``."""
+    """How images of results were read: ``max_width``, ``equalize``, ``subset`` and ``band``."""
     if results is None:
         return {}
     read = (results.settings.get("dataset") or {}).get("settings", {})
-    wanted = ("max_width", "equalize", "subset")
+    wanted = ("max_width", "equalize", "subset", "band")
     return {name: str(read[name]) for name in wanted if read.get(name) is not None}
 
 

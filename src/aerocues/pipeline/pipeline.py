@@ -13,6 +13,7 @@ from aerocues.arguments import check_choice, check_whole
 from aerocues.datasets.dataset import Geometry, Image
 from aerocues.datasets.decoded import DecodedSource, pixels_of
 from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.file_sources import sources_alike
 from aerocues.errors import MethodFailedError, SelectionError
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
@@ -103,7 +104,7 @@ class Pipeline:
         MethodFailedError
             If the detector or the descriptor fails on it.
         """
-        in_memory = decoded(image)
+        [in_memory] = decoded(image)
         return self._run(lambda: self._features(in_memory))
 
     def match(self, first: Features, second: Features) -> Matches:
@@ -159,10 +160,16 @@ class Pipeline:
             raise MethodFailedError(error.message or error.status) from error
 
 
-def decoded(image: str | Path | NDArray[np.uint8] | Image) -> Image:
-    """The image in memory: what is wrong with a file is told as such."""
+def decoded(*images: str | Path | NDArray[np.uint8] | Image) -> list[Image]:
+    """Images in memory, files read alike: what is wrong with a file is told as such."""
+    paths = [Path(image) for image in images if isinstance(image, str | Path)]
+    sources = iter(sources_alike(paths))
+    return [_decoded(next(sources) if isinstance(each, str | Path) else each) for each in images]
+
+
+def _decoded(image: FileSource | NDArray[np.uint8] | Image) -> Image:
     if isinstance(image, Image):
         return Image(image.name, DecodedSource(image.read()))
-    if isinstance(image, str | Path):
-        return Image(Path(image).name, DecodedSource(FileSource(Path(image)).read()))
+    if isinstance(image, FileSource):
+        return Image(image.path.name, DecodedSource(image.read()))
     return Image("the image", DecodedSource(pixels_of(image)))

@@ -193,7 +193,7 @@ def match(
     pipeline = Pipeline(
         combination, preset, max_keypoints=max_keypoints, seed=seed, geometry=geometry
     )
-    images = [decoded(image) for image in (image_1, image_2)]
+    images = decoded(image_1, image_2)
     first, second = (pipeline.features(image) for image in images)
     matches = pipeline.match(first, second)
     verdict = pipeline.verify(first, second, matches)

@@ -10,9 +10,8 @@ from typing import Any
 
 import cv2
 
-from aerocues.datasets.dataset import Dataset, Image, PinholeCamera
+from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, Pixels
 from aerocues.datasets.decoding import FileSource
-from aerocues.datasets.header import read_header
 from aerocues.errors import ImageError, ReconstructionError
 from aerocues.reconstruction.focal_lengths import exif_focal_length
 from aerocues.reconstruction.prepared import Prepared
@@ -23,6 +22,8 @@ GUESSED, EXIF = "guessed", "EXIF"
 # Where a focal length is from that a calibration may replace: neither the truth nor a user's own.
 CALIBRATABLE = (GUESSED, EXIF)
 JPEG_QUALITY = 95
+COPIED = ("JPEG", "PNG", "TIFF", "BMP")
+"""Formats that all versions of COLMAP read; others are written as PNG."""
 HALF_PIXEL = 0.5
 
 
@@ -39,10 +40,15 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
     target = folder / image.name
     target.parent.mkdir(parents=True, exist_ok=True)
     source = image.source
-    if isinstance(source, FileSource) and _as_it_is(source):
-        shutil.copyfile(source.path, target)
-    elif not cv2.imwrite(str(target), pixels.bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
-        raise ImageError(f"cannot write {target}; make room or choose another `output`")
+    try:
+        if isinstance(source, FileSource) and _as_it_is(source):
+            shutil.copyfile(source.path, target)
+        else:
+            target.write_bytes(_encoded(pixels, target))
+    except OSError as error:
+        raise ImageError(
+            f"cannot write {target} ({error.strerror}); make room or choose another `output`"
+        ) from error
     focal_length = None
     if isinstance(source, FileSource):
         focal_length = exif_focal_length(source, max(width, height))
@@ -50,10 +56,19 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
 
 
 def _as_it_is(source: FileSource) -> bool:
-    """Whether the original file has exactly the measured pixels."""
-    header = read_header(source.path, str(source.path))
+    """Whether the original file has exactly the measured pixels, for COLMAP, too."""
+    header = source.header()
     shrunk = source.max_width is not None and header.size[0] > source.max_width
-    return not shrunk and source.equalize == "none" and header.orientation == 1
+    changed = shrunk or source.equalize != "none" or header.orientation != 1
+    return not changed and source.is_plain() and header.format in COPIED
+
+
+def _encoded(pixels: Pixels, target: Path) -> bytes:
+    """A file for COLMAP, which tells formats by their content: JPEG by its suffix, else PNG."""
+    jpeg = target.suffix.lower() in (".jpg", ".jpeg")
+    options = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY] if jpeg else []
+    _, content = cv2.imencode(".jpg" if jpeg else ".png", pixels.bgr, options)
+    return bytes(content)
 
 
 def cameras_of(

@@ -22,6 +22,7 @@ def open_scene(
     equalize: str = "none",
     sequences: str | Sequence[str] | None = None,
     subset: str | None = None,
+    band: int | None = None,
 ) -> Dataset:
     """Open a dataset to reconstruct it.
 
@@ -30,7 +31,7 @@ def open_scene(
 
     Parameters
     ----------
-    spec, pairs, max_width, equalize, sequences, subset
+    spec, pairs, max_width, equalize, sequences, subset, band
         As in `aerocues.open_dataset`.
 
     Raises
@@ -45,6 +46,7 @@ def open_scene(
         equalize=equalize,
         sequences=sequences,
         subset=subset,
+        band=band,
     )
     scene = opened(pairs=pairs)
     if pairs is not None or not _has_choice(scene):

@@ -58,6 +58,8 @@ def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[st
         "max_width": None if width == "full" else int(width),
         "equalize": measured["settings"].get("equalize", "none"),
     }
+    if (band := measured["settings"].get("band")) is not None:
+        options["band"] = int(band)
     for spec in moved:
         dataset = open_dataset(spec, **options)
         if not _missing(dataset, found):

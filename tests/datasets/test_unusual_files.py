@@ -1,0 +1,275 @@
+"""Deep, multispectral, damaged and otherwise unusual image files."""
+
+from __future__ import annotations
+
+import io
+import os
+import zlib
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image as PillowImage
+
+from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.decoding import FileSource
+from aerocues.datasets.levels import Levels, robust_levels
+from aerocues.errors import DatasetError, ImageError
+from tests.datasets.tiff_files import tiff_bytes, write_tiff
+
+Bgr = NDArray[np.uint8]
+
+
+def gray(path: Path, **options: Any) -> NDArray[np.uint8]:
+    bgr = FileSource(path, **options).read().bgr
+    assert np.array_equal(bgr[..., 0], bgr[..., 2])
+    return bgr[..., 0]
+
+
+@pytest.fixture
+def bands() -> NDArray[np.uint8]:
+    """Seven bands, each different: (50, 70, 7)."""
+    return np.random.default_rng(1).integers(0, 256, (50, 70, 7)).astype(np.uint8)
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("tile", [0, 32])
+@pytest.mark.parametrize(
+    "stored", [{}, {"planar": True}, {"deflate": True}, {"deflate": True, "predictor": 2}]
+)
+@pytest.mark.parametrize("count", [5, 7])
+def test_a_band_of_many_is_read(
+    tmp_path: Path, bands: Bgr, order: str, tile: int, stored: dict[str, Any], count: int
+) -> None:
+    path = write_tiff(tmp_path / "a.tif", bands[..., :count], order=order, tile=tile, **stored)
+    for band in (1, 3, count):
+        assert np.array_equal(gray(path, band=band), bands[..., band - 1])
+    assert FileSource(path, band=2).is_gray()
+
+
+@pytest.mark.parametrize("predictor", [1, 2])
+def test_deep_bands_are_read(tmp_path: Path, bands: Bgr, predictor: int) -> None:
+    deep = bands.astype(np.uint16) * 200 + 1000
+    path = write_tiff(tmp_path / "a.tif", deep, deflate=True, predictor=predictor)
+    stored = FileSource(path, band=6).stored()
+    assert np.array_equal(stored.values, deep[..., 5])
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_a_band_of_a_few_is_read(tmp_path: Path, bands: Bgr, count: int) -> None:
+    path = write_tiff(tmp_path / "a.tif", bands[..., :count])
+    for band in range(1, count + 1):
+        assert np.array_equal(gray(path, band=band), bands[..., band - 1])
+
+
+def test_bands_must_be_chosen(tmp_path: Path, bands: Bgr, picture: Bgr) -> None:
+    path = write_tiff(tmp_path / "a.tif", bands)
+    for band in (None, 8):
+        with pytest.raises(ImageError, match=r"7 bands.*`band`"):
+            FileSource(path, band=band).read()
+    cv2.imwrite(str(tmp_path / "colour.png"), picture)
+    assert np.array_equal(gray(tmp_path / "colour.png", band=1), picture[..., 2])
+    write_tiff(tmp_path / "b.tif", bands)
+    (tmp_path / "colour.png").unlink()
+    with pytest.raises(DatasetError, match=r"2 of 2 images.*`band`, from 1 to 7"):
+        open_dataset(str(tmp_path))
+    opened = open_dataset(str(tmp_path), band=7)
+    assert np.array_equal(opened.images[1].read().bgr[..., 0], bands[..., 6])
+    assert dict(opened.settings)["band"] == "7"
+
+
+def test_pages_of_one_size_are_bands(tmp_path: Path, bands: Bgr) -> None:
+    pages = [np.ascontiguousarray(bands[..., i]) for i in range(3)]
+    path = write_tiff(tmp_path / "a.tif", *pages)
+    with pytest.raises(ImageError, match="3 bands"):
+        FileSource(path).read()
+    assert np.array_equal(gray(path, band=3), pages[2])
+
+
+@pytest.mark.parametrize("kinds", [(1, 0), (0, 0)])
+def test_a_thumbnail_on_the_first_page_is_left_out(
+    tmp_path: Path, picture: Bgr, kinds: tuple[int, ...]
+) -> None:
+    thumbnail, rgb = picture[::4, ::4, ::-1], picture[..., ::-1]
+    path = write_tiff(tmp_path / "a.tif", thumbnail, rgb, photometric=2, kinds=kinds)
+    source = FileSource(path)
+    assert source.size() == (80, 60)
+    assert np.array_equal(source.read().bgr, picture)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float32])
+def test_white_may_be_the_least_value(tmp_path: Path, bands: Bgr, kind: Any) -> None:
+    values = bands[..., 0].astype(kind)
+    inverted = -values if kind == np.float32 else np.iinfo(kind).max - values
+    plain = write_tiff(tmp_path / "plain.tif", values)
+    negative = write_tiff(tmp_path / "negative.tif", inverted, photometric=0)
+    assert np.array_equal(gray(negative), gray(plain))
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.int16, np.float32, np.float64])
+def test_what_has_no_data_is_no_content(tmp_path: Path, bands: Bgr, kind: Any) -> None:
+    values = bands[..., 0].astype(kind)
+    nodata = 7 if kind in (np.uint8, np.uint16) else -10_000
+    values[:5] = nodata
+    path = write_tiff(tmp_path / "a.tif", values, tags={42113: str(nodata)})
+    pixels = FileSource(path).read()
+    assert pixels.valid is not None
+    assert np.array_equal(pixels.valid, values != nodata)
+    assert pixels.bgr[pixels.valid].min() == 0
+    assert pixels.bgr[pixels.valid].max() >= 254
+
+
+def test_the_range_of_values_leaves_out_highlights_and_faults() -> None:
+    values = np.concatenate([np.linspace(1000, 2000, 10_000), [65_535.0], [0.0]])
+    found = robust_levels(values)
+    assert found.low == pytest.approx(1000 + 5 - 0.25 * 990, abs=1)
+    assert found.high == pytest.approx(2000 - 5 + 0.25 * 990, abs=1)
+    assert robust_levels(np.linspace(-5, 20, 500)) == Levels(-5.0, 20.0)
+    assert Levels(10, 20).scaled(np.array([0.0, 10, 15, 20, 99, np.nan, np.inf])).tolist() == [
+        *(0, 0, 128, 255, 255, 0, 255)
+    ]
+
+
+@pytest.mark.parametrize("kind", [np.uint16, np.float32])
+def test_images_of_a_scene_are_scaled_alike(tmp_path: Path, bands: Bgr, kind: Any) -> None:
+    values = bands[..., 0].astype(kind) * 10 + 30_000
+    for number in range(4):
+        own = values.copy()
+        if number % 2:
+            own[0, :3] = 65_535
+        write_tiff(tmp_path / f"{number}.tif", own)
+    dataset = open_dataset(str(tmp_path))
+    pixels = [image.read().bgr for image in dataset.images]
+    assert np.array_equal(pixels[0][1:], pixels[1][1:])
+    assert int(pixels[0].max()) - int(pixels[0].min()) > 150
+    assert dict(dataset.settings)["values"].startswith("30000 to 3")
+    keys = {image.source.content_key() for image in dataset.images}
+    assert keys.isdisjoint({FileSource(path).content_key() for path in tmp_path.iterdir()})
+
+
+def test_sound_files_of_8_bits_keep_their_keys(tmp_path: Path, picture: Bgr) -> None:
+    path = tmp_path / "a.png"
+    cv2.imwrite(str(path), picture)
+    source = FileSource(path)
+    assert source.is_plain()
+    assert FileSource(path, levels=Levels(0, 1)).content_key() == source.content_key()
+
+
+def camera_names(folder: Path, labels: list[str], exposures: int = 3) -> None:
+    values = np.random.default_rng(0).integers(0, 4000, (30, 40)).astype(np.uint16)
+    for exposure in range(exposures):
+        for label in labels:
+            write_tiff(folder / f"IMG_{exposure:04d}_{label}.tif", values)
+
+
+@pytest.mark.parametrize(
+    "labels", [list("12345"), ["GRE", "NIR", "RED", "REG"], ["MS_G", "MS_NIR", "MS_R", "MS_RE"]]
+)
+def test_bands_in_files_are_asked_about(tmp_path: Path, labels: list[str]) -> None:
+    camera_names(tmp_path, labels)
+    with pytest.raises(DatasetError, match=f"{len(labels)} bands of each exposure.*`band`"):
+        open_dataset(str(tmp_path))
+    names = [image.name for image in open_dataset(str(tmp_path), band=2).images]
+    assert names == [f"IMG_{exposure:04d}_{labels[1]}.tif" for exposure in range(3)]
+    assert len(open_dataset(str(tmp_path), subset=f"*_{labels[0]}.tif").images) == 3
+
+
+def test_numbers_at_the_end_of_names_need_not_be_bands(tmp_path: Path, picture: Bgr) -> None:
+    for name in ("strip1_1", "strip1_2", "strip2_1", "strip2_2"):
+        cv2.imwrite(str(tmp_path / f"{name}.tif"), picture)
+    assert len(open_dataset(str(tmp_path)).images) == 4
+
+
+def jpeg(picture: Bgr, progressive: bool = False) -> bytearray:
+    large = cv2.resize(picture, (640, 480))
+    options = [cv2.IMWRITE_JPEG_PROGRESSIVE, int(progressive)]
+    return bytearray(bytes(cv2.imencode(".jpg", large, options)[1]))
+
+
+@pytest.mark.parametrize("progressive", [False, True])
+@pytest.mark.parametrize("damage", ["zeros to the end", "zeros", "hole"])
+def test_a_jpeg_that_lacks_data_is_refused(
+    tmp_path: Path, picture: Bgr, progressive: bool, damage: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    data = jpeg(picture, progressive)
+    middle = len(data) // 2
+    if damage == "zeros to the end":
+        data[middle:-2] = bytes(len(data) - 2 - middle)
+    elif damage == "zeros":
+        data[middle : middle + 2000] = bytes(2000)
+    else:
+        del data[middle : middle + 2000]
+    path = tmp_path / "damaged.jpg"
+    path.write_bytes(data)
+    with pytest.raises(ImageError, match=r"damaged\.jpg.*Corrupt JPEG data"):
+        FileSource(path).read()
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("padding", [b"", b"\0" * 16, b"\0" * 40])
+def test_a_jpeg_may_be_padded_before_its_end(tmp_path: Path, picture: Bgr, padding: bytes) -> None:
+    data = jpeg(picture)
+    path = tmp_path / "padded.jpg"
+    path.write_bytes(data[:-2] + padding + data[-2:])
+    assert FileSource(path).read().bgr.shape == (480, 640, 3)
+
+
+def test_what_others_write_meanwhile_is_kept(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decode = cv2.imdecode
+
+    def talkative(*arguments: Any) -> Any:
+        os.write(2, b"a progress bar\n")
+        return decode(*arguments)
+
+    path = write_tiff(tmp_path / "a.tif", np.zeros((20, 30), np.uint8), tags={42113: "5"})
+    monkeypatch.setattr(cv2, "imdecode", talkative)
+    FileSource(path).read()
+    assert capfd.readouterr().err == "a progress bar\n"
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("part", [0.4, 0.95])
+def test_a_tiff_that_is_cut_short_is_refused(
+    tmp_path: Path, picture: Bgr, planar: bool, part: float
+) -> None:
+    large = cv2.resize(picture, (320, 240))
+    content = tiff_bytes(large, photometric=2, planar=planar)
+    # The directory is at the end, or where Pillow writes it: at the beginning.
+    buffer = io.BytesIO()
+    PillowImage.fromarray(large).save(buffer, "TIFF")
+    whole = buffer.getvalue() if not planar else content
+    path = tmp_path / "cut.tif"
+    path.write_bytes(whole[: int(len(whole) * part)])
+    with pytest.raises(ImageError, match=r"cut\.tif"):
+        FileSource(path).read()
+
+
+def test_a_large_text_in_a_png_is_no_fault(tmp_path: Path, picture: Bgr) -> None:
+    data = bytes(cv2.imencode(".png", picture)[1])
+    text = b"XML:com.adobe.xmp\0\1\0\0\0" + zlib.compress(b"x" * 3_000_000)
+    chunk = len(text).to_bytes(4, "big") + b"iTXt" + text
+    chunk += zlib.crc32(b"iTXt" + text).to_bytes(4, "big")
+    path = tmp_path / "large.png"
+    path.write_bytes(data[:33] + chunk + data[33:])
+    assert np.array_equal(FileSource(path).read().bgr, picture)
+
+
+def test_a_webp_of_many_megapixels_costs_no_memory(tmp_path: Path, picture: Bgr) -> None:
+    body = b"\x2f" + (13_999 | 13_999 << 14).to_bytes(4, "little") + bytes(8)
+    chunk = b"VP8L" + len(body).to_bytes(4, "little") + body
+    riff = b"RIFF" + (len(chunk) + 4).to_bytes(4, "little") + b"WEBP" + chunk
+    path = tmp_path / "large.webp"
+    path.write_bytes(riff)
+    assert FileSource(path).size() == (14_000, 14_000)
+    with pytest.raises(ImageError, match=r"large\.webp"):
+        FileSource(path).read()
+    for options, channels in (([], 3), ([cv2.IMWRITE_WEBP_QUALITY, 101], 4)):
+        alpha = np.full((60, 80, 1), 200, np.uint8)
+        pixels = np.concatenate([picture, alpha], axis=2)[..., :channels]
+        path.write_bytes(bytes(cv2.imencode(".webp", pixels, options)[1]))
+        assert FileSource(path).size() == (80, 60)
