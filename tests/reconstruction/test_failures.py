@@ -151,3 +151,20 @@ def test_gray_images_leave_out_what_needs_colour(tmp_path: Path, quick: Options)
         scene_of(images), tmp_path / "models", options, "ORB-LUCID-HAM-BF,ORB-ORB-HAM-BF"
     )
     assert row["descriptor"] == "ORB"
+
+
+@pytest.mark.slow
+def test_an_image_that_cannot_be_read_is_left_out(
+    tmp_path: Path, empty: Path, quick: Options
+) -> None:
+    dataset = write_scene(tmp_path / "images")
+    [path] = (tmp_path / "images").rglob(dataset.images[4].name)
+    path.write_bytes(path.read_bytes()[:5000])
+    row = only_row(dataset, empty, quick, "SIFT-SIFT-L2-FLANN")
+    assert (row["status"], row["images"], row["registered_images"]) == ("ok", 8, 8)
+    assert row["message"].endswith(f"1 image cannot be read: {path.name}")
+    other = write_scene(tmp_path / "other")
+    for image in (tmp_path / "other").rglob("*.png"):
+        image.write_bytes(b"")
+    with pytest.raises(ReconstructionError, match="9 of 9 images cannot be read"):
+        only_row(other, tmp_path / "more", quick)

@@ -9,7 +9,7 @@ from typing import NoReturn
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and exit: 0 done, 2 a mistake of input, 130 or 143 interrupted.
 
-    1 is for a reconstruction of which no model succeeded.
+    1 is for a reconstruction of which no model succeeded, and a run in which every row is an error.
 
     Parameters
     ----------
@@ -20,4 +20,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
     from aerocues.cli.program import exit_code
 
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # names of files need not be Unicode
+            stream.reconfigure(errors="backslashreplace")
     sys.exit(exit_code(sys.argv[1:] if arguments is None else arguments))

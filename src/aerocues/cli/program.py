@@ -29,6 +29,7 @@ from aerocues.cli import (
 )
 from aerocues.cli.wording import in_options
 from aerocues.errors import AerocuesError
+from aerocues.phrases import printable
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -144,5 +145,5 @@ def _told(error: Any) -> str:
 
 
 def _complain(message: str) -> int:
-    sys.stderr.write(f"error: {' '.join(message.split())}\n")
+    sys.stderr.write(f"error: {printable(' '.join(message.split()))}\n")
     return BAD_INPUT

@@ -170,7 +170,9 @@ def _shrunk(dataset: Dataset, max_width: int | None) -> int:
     """The width that images were shrunk to; 0 where they are small enough as they are."""
     if not max_width:
         return 0
-    width = dataset.images[0].read().bgr.shape[1]
+    from aerocues.pipeline.equal_footing import survey_image
+
+    width = survey_image(dataset.images).read().bgr.shape[1]
     return max_width if width == max_width else 0
 
 

@@ -79,11 +79,13 @@ def _certainty(found: Recommendation, best: dict[str, Any]) -> str:
     )
     told = f"of {found.combinations} for {found.objective.title} on these pairs"
     if chance >= PROBABLE:
-        first = f"{found.leader} is the best {told} with a probability of {likelihood(chance)}"
+        first = (
+            f"{found.leader} is the best {told} with a probability of {found.likelihood(chance)}"
+        )
     else:
         first = (
             f"{found.leader} has the highest expected score {told}, but the probability that it is "
-            f"the best is only {likelihood(chance)}"
+            f"the best is only {found.likelihood(chance)}"
         )
     names = possible_winners(found.ranked)
     others = [name for name in names if name != found.leader]
@@ -157,6 +159,11 @@ def _notes(found: Recommendation) -> list[str]:
             f"{count(len(seen.others), 'pair')} left out: no model beats chance there, the "
             "images may not overlap"
         )
+    if seen.failed:
+        notes.append(
+            f"{count(len(seen.failed), 'pair')} left out, which cannot be measured: "
+            f"{seen.failed[0][1]}"
+        )
     lacking = len(seen.overlapping) - len(seen.referenced)
     if seen.referenced and lacking:
         notes.append(
@@ -207,7 +214,7 @@ def ranking(found: Recommendation, top: int) -> Table:
             f"{rank}",
             row["combination"],
             f"{row['score']:.3f}",
-            likelihood(row["probability"]),
+            found.likelihood(row["probability"]),
             f"{row['succeeded']}/{row['pairs']}",
             f"{row[share] or 0.0:.3f}",
             f"{row[number] or 0.0:,.0f}",

@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from aerocues.scoring.measured import Measured
 
 
+NOTHING_MEASURED = 1
+
+
 class Engine(StrEnum):
     """Values of ``--engine``."""
 
@@ -129,7 +132,7 @@ def run(
     """Measure combinations on the image pairs of a dataset.
 
     Each result is saved at once. After an interruption run the same command again: it continues,
-    and nothing is measured twice.
+    and nothing is measured twice. The exit code is 1 if every row is an error.
     """
     from aerocues.cli.cluster import engine_on
     from aerocues.cli.interruption import interruptible
@@ -170,7 +173,9 @@ def run(
         arguments |= {**limits, "features": features}
         with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
             results = _measure({**arguments, "engine": chosen})
-        _print_results(results, images.name, top)
+        measured = _print_results(results, images.name, top)
+    if not measured:
+        raise typer.Exit(NOTHING_MEASURED)
 
 
 def _measure(arguments: dict[str, Any]) -> Results:
@@ -200,13 +205,15 @@ def _end(tally: Tally) -> str:
     return "nothing to measure: the images rule out all combinations that were chosen"
 
 
-def _print_results(results: Results, dataset: str, top: int) -> None:
+def _print_results(results: Results, dataset: str, top: int) -> bool:
+    """Print the best and what to do next; whether anything could be measured."""
     import polars as pl
 
     from aerocues.cli.cluster import machine_lines
     from aerocues.cli.console import standard_output
     from aerocues.cli.status import times_of
     from aerocues.results.measured_results import timing_counts
+    from aerocues.results.statuses import RETRIED
     from aerocues.scoring.measured import MeasuredRows
 
     table = results.table().filter(pl.col("dataset") == dataset)
@@ -226,6 +233,7 @@ def _print_results(results: Results, dataset: str, top: int) -> None:
         *(f"         aerocues {what}" for what in _next(folder, table)),
     ):
         console.print(line, soft_wrap=True, markup=False)
+    return not len(table) or not table["status"].is_in(RETRIED).all()
 
 
 def _next(folder: str, table: pl.DataFrame) -> tuple[str, ...]:

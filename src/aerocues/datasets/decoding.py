@@ -18,6 +18,7 @@ from aerocues.datasets.levels import Levels, robust_levels
 from aerocues.datasets.stored_values import REDUCED, StoredValues, UndecodableError, stored_values
 from aerocues.datasets.tiff import is_first
 from aerocues.errors import ImageError
+from aerocues.phrases import printable
 
 PIXEL_LIMIT = 250_000_000
 """Images with more pixels are refused, or decoded at reduced size if the format allows it."""
@@ -91,11 +92,11 @@ class FileSource:
         try:
             return stored_values(data, header, reduction=self._reduction(header), band=self.band)
         except UndecodableError as error:
-            raise ImageError(f"{self.path} cannot be decoded: {error}") from error
+            raise ImageError(f"{self._name} cannot be decoded: {error}") from error
 
     def header(self, data: bytes | None = None) -> Header:
         """The header of the file, or of its content; ImageError if it cannot be read."""
-        return read_header(self.path if data is None else data, str(self.path))
+        return read_header(self.path if data is None else data, self._name)
 
     def size(self) -> tuple[int, int]:
         """Width and height of the image that `read` returns, from the header alone.
@@ -161,18 +162,23 @@ class FileSource:
             return ""
         return f"|{VALUES_VERSION}|{self.band}|{self.levels!r}"
 
+    @property
+    def _name(self) -> str:
+        """The path in messages."""
+        return printable(str(self.path))
+
     def _bytes(self) -> bytes:
         try:
             return self.path.read_bytes()
         except OSError as error:
-            raise ImageError(unreadable(str(self.path), error)) from error
+            raise ImageError(unreadable(self._name, error)) from error
 
     def _reduction(self, header: Header) -> int:
         """The factor by which the decoder shrinks the image: 1, or more if it is too large."""
         if header.pixels <= self.pixel_limit:
             return 1
         message = (
-            f"{self.path} has {header.pixels / 1e6:.0f} megapixels, "
+            f"{self._name} has {header.pixels / 1e6:.0f} megapixels, "
             f"more than {self.pixel_limit / 1e6:.0f}; "
         )
         if header.format != "JPEG":

@@ -14,6 +14,7 @@ from aerocues.datasets.header import SUFFIXES
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import Consecutive, Names, PairStrategy, parse_pairs
 from aerocues.errors import DatasetError
+from aerocues.phrases import printable
 
 
 def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
@@ -63,7 +64,7 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
     DatasetError
         If the subset of the options has no file, or a band must be chosen.
     """
-    names = {path.relative_to(root).as_posix(): path for path in paths}
+    names = {printable(path.relative_to(root).as_posix()): path for path in paths}
     chosen = {name: path for name, path in names.items() if options.takes(name)}
     if names and not chosen:
         folders = dict.fromkeys(name.rpartition("/")[0] or name for name in names)
@@ -158,7 +159,7 @@ def scene_of(
     settings: tuple[tuple[str, str], ...],
 ) -> Dataset:
     """The dataset of images of one scene."""
-    name = folder.resolve().name or "folder"
+    name = printable(folder.resolve().name) or "folder"
     numbered = [Pair(i, first, second, name) for i, (first, second) in enumerate(pairs)]
     return Dataset(name, images, numbered, "epipolar", settings)
 

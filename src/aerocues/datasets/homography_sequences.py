@@ -16,6 +16,7 @@ from aerocues.datasets.fitting import fitted_size, scale_matrix
 from aerocues.datasets.folder import image_paths, settings_of, subfolders
 from aerocues.datasets.options import Options
 from aerocues.errors import DatasetError, ImageError
+from aerocues.phrases import printable
 
 
 @dataclass(frozen=True)
@@ -96,10 +97,10 @@ def _sequence(
     paths = _numbered(layout, folder)
     if 1 not in paths or len(paths) < 2:
         raise DatasetError(f"the sequence {folder} needs image 1 and others; download it again")
-    name = folder.resolve().name
+    name = printable(folder.resolve().name)
     sources = file_sources(list(paths.values()), options, folder)
     images = {
-        number: Image(f"{name}/{path.name}", source)
+        number: Image(f"{name}/{printable(path.name)}", source)
         for (number, path), source in zip(paths.items(), sources, strict=True)
     }
     scales = {number: _scale(image) for number, image in images.items()}

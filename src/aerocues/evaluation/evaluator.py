@@ -9,6 +9,7 @@ from aerocues.evaluation.rows import begin_row
 from aerocues.evaluation.truth_comparison import TwoViews
 from aerocues.evaluation.two_views import TwoViewMeasurement, record_time
 from aerocues.evaluation.unit import Context, PairWork, Unit
+from aerocues.phrases import printable
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import Announce, FeatureSource
@@ -67,8 +68,8 @@ class Evaluator:
                 row["status"] = self._two_views.measure(row, views, combination)
             except StageError as failure:
                 row["status"], row["message"] = failure.status, failure.message
-            if row["message"] is None:
-                row["message"] = self._features.problem
+            message = self._features.problem if row["message"] is None else row["message"]
+            row["message"] = None if message is None else printable(message)
             yield add_metrics(row)
 
 

@@ -10,6 +10,7 @@ import cv2
 from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.methods.combination import Combination
+from aerocues.phrases import printable
 from aerocues.results.metrics import Row
 from aerocues.results.schema import ANGLE_THRESHOLDS, PIXEL_THRESHOLDS, empty_row
 
@@ -54,7 +55,7 @@ def failed_rows(context: Context, unit: Unit, status: str, message: str) -> list
     """Rows for work that failed."""
     return [
         begin_row(context, context.dataset.pair(work.pair), combination, key)
-        | {"status": status, "message": message}
+        | {"status": status, "message": printable(message)}
         for work in unit.work
         for combination, key in zip(work.combinations, work.row_keys, strict=True)
     ]

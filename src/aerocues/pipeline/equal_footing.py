@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from aerocues.datasets.dataset import Image
 from aerocues.datasets.decoded import DecodedSource
-from aerocues.errors import SelectionError
+from aerocues.errors import ImageError, SelectionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.parameters import Value
@@ -54,8 +54,18 @@ class Footing:
 
 
 def survey_image(images: Sequence[Image]) -> Image:
-    """The image from which thresholds are set: the middle one, as flights begin over edges."""
-    return images[len(images) // 2]
+    """The image from which thresholds are set: the middle one, as flights begin over edges.
+
+    Or the next one that can be read.
+    """
+    middle = len(images) // 2
+    for image in (*images[middle:], *images[:middle]):
+        try:
+            image.read()
+        except ImageError:
+            continue  # an error of its own pairs
+        return image
+    return images[middle]
 
 
 def at_equal_footing(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
 
-from aerocues.errors import AerocuesError
+from aerocues.errors import AerocuesError, ImageError
 from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
@@ -58,15 +58,22 @@ def prepare_images(
     images: Sequence[str],
     limits: ReconstructionLimits,
     progress: Callable[[int, int], None],
-) -> list[Prepared]:
+) -> dict[str, Prepared | str]:
     """Write images into the folder of the scene, in a child process.
+
+    Returns
+    -------
+    dict of str to Prepared or str
+        By name of the image; a text says why it cannot be read.
 
     Raises
     ------
     AerocuesError
-        If an image cannot be read or written.
+        If the process dies.
+    OSError
+        If nothing can be written.
     """
-    prepared: list[Prepared] = []
+    prepared: dict[str, Prepared | str] = {}
     if not images:
         return prepared
     child = _child(scene, limits)
@@ -74,11 +81,11 @@ def prepare_images(
         for image in images:
             child.send(image)
             found = child.receive()
-            if isinstance(found, Exception):
+            if isinstance(found, Exception) and not isinstance(found, ImageError):
                 raise found
             if isinstance(found, Loss):
                 raise AerocuesError(f"{image}: {found.message}; remove it from the folder")
-            prepared.append(found)
+            prepared[image] = str(found) if isinstance(found, ImageError) else found
             progress(len(prepared), len(images))
         child.stop(SECONDS_TO_END)
     except BaseException:

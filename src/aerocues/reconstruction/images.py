@@ -12,7 +12,7 @@ import cv2
 
 from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, Pixels
 from aerocues.datasets.decoding import FileSource
-from aerocues.errors import ImageError, ReconstructionError
+from aerocues.errors import ReconstructionError
 from aerocues.reconstruction.focal_lengths import exif_focal_length
 from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
@@ -33,7 +33,9 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
     Raises
     ------
     ImageError
-        If the image cannot be read or written.
+        If the image cannot be read.
+    ReconstructionError
+        If it cannot be written.
     """
     pixels = image.read()
     height, width = pixels.bgr.shape[:2]
@@ -46,7 +48,7 @@ def prepare_image(image: Image, folder: Path) -> Prepared:
         else:
             target.write_bytes(_encoded(pixels, target))
     except OSError as error:
-        raise ImageError(
+        raise ReconstructionError(
             f"cannot write {target} ({error.strerror}); make room or choose another `output`"
         ) from error
     focal_length = None

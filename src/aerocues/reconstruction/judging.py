@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from aerocues.methods.combination import Combination
+from aerocues.phrases import count
 from aerocues.reconstruction.colmap import registered
 from aerocues.reconstruction.diagnosis import Outcome, judged, told_left_out
 from aerocues.reconstruction.exports import export_model, undistort
+from aerocues.reconstruction.match_graph import LISTED
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.picture import picture_of
 from aerocues.reconstruction.quality import cloud_of, model_figures
@@ -64,14 +66,20 @@ def judge(
         located,
         requirements,
     )
-    told = "; ".join(filter(None, (outcome.message, *_told_truth(truth, located))))
-    outcome = replace(outcome, message=told or None)
+    told = (outcome.message, *_told_truth(truth, located), _told_unreadable(scene))
+    outcome = replace(outcome, message="; ".join(filter(None, told)) or None)
     folder = scene.place(combination)
     _write(model, scene, folder)
     cloud = cloud_of(model, truth, located)
     title = _title(combination, figures, len(scene.dataset.images), outcome)
     write_whole({folder / CLOUD: cloud.content(), folder / PICTURE: picture_of(cloud, title)})
     return figures, outcome
+
+
+def _told_unreadable(scene: Scene) -> str:
+    names = list(scene.left_out)
+    shown = ", ".join(names[:LISTED]) + (", ..." if len(names) > LISTED else "")
+    return f"{count(len(names), 'image')} cannot be read: {shown}" if names else ""
 
 
 def _told_truth(truth: TruePositions | None, located: Located | None) -> list[str]:

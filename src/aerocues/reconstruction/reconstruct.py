@@ -12,6 +12,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ReconstructionError, StoreError
 from aerocues.methods.combination import Combination
 from aerocues.methods.selection import Patterns
+from aerocues.phrases import printable
 from aerocues.progress import Progress
 from aerocues.reconstruction.baseline import baseline_problem
 from aerocues.reconstruction.calibration import told_calibration, with_calibrated
@@ -165,6 +166,7 @@ class _Reconstruction:
             for combination, figures, last in running:
                 when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}
                 row = {**identity_of(scene, combination), **figures, **when}
+                row["message"] = row["message"] and printable(row["message"])
                 write_outcome(scene.place(combination), row)
                 if last:
                     remove_features(scene, combination)
@@ -182,6 +184,7 @@ class _Reconstruction:
                 "settings": dict(scene.dataset.settings),
                 "source": asdict(source) if source else None,
             },
+            "left_out": dict(scene.left_out),
             "preset": scene.preset,
             "protocol": asdict(scene.protocol),
             "cameras": [asdict(group) for group in scene.cameras],

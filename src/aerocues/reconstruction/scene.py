@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
@@ -52,7 +52,8 @@ class Wanted:
 class Scene:
     """The context that all reconstructions of a run share; it is sent to each process once.
 
-    ``image_keys`` are hashes of the images' pixels by name. ``folder`` holds the models,
+    ``image_keys`` are hashes of the images' pixels by name, ``left_out`` are images that cannot be
+    read, with the reason. ``folder`` holds the models,
     ``features`` the features of the images.
     """
 
@@ -64,6 +65,7 @@ class Scene:
     features: Path
     machine: str
     image_keys: Mapping[str, str]
+    left_out: Mapping[str, str] = field(default_factory=dict)
     cameras: tuple[CameraGroup, ...] = ()
     wanted: Wanted = Wanted()
     versions: tuple[str, str] = ("", "")
@@ -72,6 +74,23 @@ class Scene:
     def images(self) -> Path:
         """The folder of the measured images, for COLMAP and others."""
         return self.folder / IMAGES
+
+    def without(self, unreadable: Mapping[str, str]) -> Scene:
+        """The scene without images that cannot be read, and the pairs with them."""
+        if not unreadable:
+            return self
+        images = [image for image in self.dataset.images if image.name not in unreadable]
+        pairs = [
+            pair
+            for pair in self.dataset.pairs
+            if pair.image_1 not in unreadable and pair.image_2 not in unreadable
+        ]
+        return replace(
+            self,
+            dataset=replace(self.dataset, images=images, pairs=pairs),
+            image_keys={image.name: self.image_keys[image.name] for image in images},
+            left_out={**self.left_out, **unreadable},
+        )
 
     def place(self, combination: Combination) -> Path:
         """The folder of the model of a combination."""

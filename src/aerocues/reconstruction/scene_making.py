@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import ReconstructionError
+from aerocues.errors import ImageError, ReconstructionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
@@ -48,7 +48,8 @@ def scene_of(dataset: Dataset, output: Path, options: ReconstructionOptions) -> 
         pair for pair in dataset.pairs if unordered[frozenset((pair.image_1, pair.image_2))] is pair
     ]
     dataset = replace(dataset, pairs=once)
-    return Scene(
+    keys, unreadable = _image_keys(dataset)
+    scene = Scene(
         dataset=dataset,
         methods=limited(installed_methods().with_preset(preset), options.protocol.max_keypoints),
         preset=preset.name,
@@ -56,10 +57,22 @@ def scene_of(dataset: Dataset, output: Path, options: ReconstructionOptions) -> 
         folder=output.absolute(),
         features=_features_folder(output, options),
         machine=machine_name(),
-        image_keys={image.name: image.source.content_key() for image in dataset.images},
+        image_keys=keys,
         wanted=options.wanted,
         versions=(software_versions()["opencv"], colmap_version()),
     )
+    return scene.without(unreadable)
+
+
+def _image_keys(dataset: Dataset) -> tuple[dict[str, str], dict[str, str]]:
+    """Hashes of images by name, and why those cannot be read that have none."""
+    keys, unreadable = {}, {}
+    for image in dataset.images:
+        try:
+            keys[image.name] = image.source.content_key()
+        except ImageError as error:
+            unreadable[image.name] = str(error)
+    return keys, unreadable
 
 
 def _protocol(options: ReconstructionOptions, preset: Preset) -> ReconstructionProtocol:
@@ -107,6 +120,23 @@ def chosen_combinations(
     return chosen
 
 
+def told_unreadable(scene: Scene) -> str:
+    """Which images are left out because they cannot be read; an error where few are left.
+
+    Raises
+    ------
+    ReconstructionError
+        If fewer than three images, or half of them, can be read.
+    """
+    count, reason = len(scene.left_out), next(iter(scene.left_out.values()))
+    total = len(scene.dataset.images) + count
+    cannot = f"{count} of {total} images cannot be read ({', '.join(list(scene.left_out)[:3])}"
+    cannot += ", ...)" if count > 3 else ")"
+    if len(scene.dataset.images) < max(3, total / 2):
+        raise ReconstructionError(f"{cannot}: {reason}")
+    return f"left out: {cannot}: {reason}"
+
+
 def with_cameras(scene: Scene, limits: ReconstructionLimits, tell: ReconstructionProgress) -> Scene:
     """The scene with its cameras; images that are not in the folder yet are written there."""
     known = read_prepared(scene.folder, scene.image_keys)
@@ -114,9 +144,16 @@ def with_cameras(scene: Scene, limits: ReconstructionLimits, tell: Reconstructio
         scene.folder, scene.image_keys, known
     )  # removed first, as its images are overwritten
     left = [image.name for image in scene.dataset.images if image.name not in known]
-    for each in prepare_images(scene, left, limits, tell.read):
-        known[each.name] = each
+    unreadable = {}
+    for name, found in prepare_images(scene, left, limits, tell.read).items():
+        if isinstance(found, str):
+            unreadable[name] = found
+        else:
+            known[name] = found
     write_prepared(scene.folder, scene.image_keys, known)
+    scene = scene.without(unreadable)
+    if scene.left_out:
+        tell.note(told_unreadable(scene))
     prepared = [known[image.name] for image in scene.dataset.images]
     prepared, taken = with_those_of_others(prepared)
     if taken and scene.protocol.focal_length is None:

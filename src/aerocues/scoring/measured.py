@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from aerocues.errors import ArgumentError, ScoreError
 from aerocues.results.combination_columns import METHODS, combination_name
+from aerocues.results.statuses import RETRIED
 from aerocues.scoring.combinations import (
     SUCCESS,
     decision_table,
@@ -199,6 +200,11 @@ def _refuse_failure(rows: pl.DataFrame, preset: ScorePreset) -> None:
     if "ok" in statuses or ("chance" in statuses and not preset.chance_fails):
         return
     told = ", ".join(f"{status} {number:,}" for status, number in statuses.items())
+    if set(statuses) <= set(RETRIED):
+        reason = rows["message"].drop_nulls().to_list()[:1]
+        raise ScoreError(
+            f"nothing could be measured on {rows['dataset'][0]} ({told}): {''.join(reason)}"
+        )
     raise ScoreError(
         f"nothing succeeded on {rows['dataset'][0]} ({told}), so there is nothing to rank; "
         "its messages tell why: try larger images (`max_width`), other pairs or combinations"

@@ -68,6 +68,8 @@ class SurveyedFlight:
             if names:
                 shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
                 notes.append(f"{len(names)} of {len(survey.images)} images {what}: {shown}")
+        if unreadable:
+            notes.append(f"their pairs are left out: {survey.unreadable[0][1]}")
         return notes
 
 

@@ -73,7 +73,7 @@ class Recommendation:
     final: Final | None = None
 
     def __repr__(self) -> str:
-        chance = likelihood(float(self.ranked["probability"][0]))
+        chance = self.likelihood(float(self.ranked["probability"][0]))
         how = "by the models of the leaders; " if self.best != self.leader else ""
         return (
             f"Recommendation: take {self.best}; {how}{self.leader} is the best of "
@@ -85,6 +85,20 @@ class Recommendation:
 
     def _repr_html_(self) -> str:
         return as_html(repr(self), self.ranked)
+
+    @property
+    def readable(self) -> float:
+        """Share of the images, or of the tested pairs, that could be read and measured."""
+        if self.flight:
+            survey = self.flight.survey
+            return 1 - len(survey.unreadable) / len(survey.images)
+        seen = self.seen
+        tested = len(seen.overlapping) + len(seen.others) + len(seen.failed)
+        return 1 - len(seen.failed) / tested
+
+    def likelihood(self, probability: float) -> str:
+        """A probability in words; never more than the share of the images that could be read."""
+        return likelihood(min(probability, self.readable))
 
     @property
     def leader(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,13 +33,15 @@ class Seen:
     """Numbers of the pairs whose images overlap, and of the others.
 
     `unseen` are the pairs for which there was no time, `referenced` those that overlap and have a
-    reference, which tells right matches.
+    reference, which tells right matches. `failed` are pairs that cannot be measured, with the
+    reason: an image that is damaged.
     """
 
     overlapping: tuple[int, ...]
     others: tuple[int, ...]
     unseen: tuple[int, ...] = ()
     referenced: tuple[int, ...] = ()
+    failed: tuple[tuple[int, str], ...] = ()
 
 
 def spread_pairs(pairs: Sequence[Pair], most: int = RACE_PAIRS, seed: int = 0) -> list[Pair]:
@@ -113,14 +115,13 @@ def find_overlap(
     test = _OverlapTest(evaluator, engine, session)
     for start, end in ((0, FIRST), (FIRST, SECOND), (SECOND, len(spread))):
         test.run(spread[start:end])
-    seen = Seen(
-        *(
-            tuple(pair.index for pair in pairs if pair.index in found)
-            for found in (test.overlapping, test.others, test.unseen)
-        )
+    overlapping, others, unseen = (
+        tuple(pair.index for pair in pairs if pair.index in found)
+        for found in (test.overlapping, test.others, test.unseen)
     )
+    seen = Seen(overlapping, others, unseen)
     if seen.overlapping:
-        return seen
+        return _without_failed(evaluator, seen)
     if seen.unseen:
         raise session.too_small(
             "no overlapping images were found in time, and "
@@ -168,6 +169,17 @@ class _OverlapTest:
 
     def _share(self) -> float:
         return TESTING if len(self.overlapping) >= FEWEST_PAIRS else SEARCHING
+
+
+def _without_failed(evaluator: PairEvaluator, seen: Seen) -> Seen:
+    """Tell pairs that cannot be measured from those that do not overlap."""
+    failed = {}
+    for pair in seen.others:
+        rows = [evaluator.row((pair, probe)) for probe in probes()]
+        if all(row is not None and row["status"] == "error" for row in rows):
+            failed[pair] = next(str(row["message"]) for row in rows if row is not None)
+    others = tuple(pair for pair in seen.others if pair not in failed)
+    return replace(seen, others=others, failed=tuple(failed.items()))
 
 
 def _why_none(evaluator: PairEvaluator, pairs: Sequence[int]) -> str:
