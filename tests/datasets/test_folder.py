@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from PIL import Image as PillowImage
 
 from aerocues.datasets.catalog import open_dataset
-from aerocues.datasets.folder import natural_key
+from aerocues.datasets.listing import natural_key
 from aerocues.errors import DatasetError
 from aerocues.evaluation.run import run
 from tests.evaluation.inline import InlineEngine

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from PIL import Image as PillowImage
 
 from aerocues.datasets.dataset import GpsPosition
-from aerocues.datasets.gps import east_north_up, position_from_tags, read_gps
+from aerocues.datasets.gps import east_north_up, position_from_tags
+from aerocues.datasets.metadata import read_metadata
 
 NORTH_EAST = {1: "N", 2: (46.0, 30.0, 36.0), 3: "E", 4: (9.0, 15.0, 0.0)}
 
@@ -40,7 +41,7 @@ def test_every_format_with_exif_gives_its_position(tmp_path: Path, name: str) ->
     exif = PillowImage.Exif()
     exif[0x8825] = {**NORTH_EAST, 5: b"\x00", 6: 120.25}
     PillowImage.new("RGB", (32, 32)).save(tmp_path / name, exif=exif.tobytes())
-    position = read_gps(tmp_path / name)
+    position = read_metadata(tmp_path / name).gps
     assert position is not None
     assert (position.latitude, position.longitude) == pytest.approx((46.51, 9.25))
     assert position.altitude == 120.25
@@ -56,20 +57,20 @@ def test_broken_exif_is_no_position_and_no_error(tmp_path: Path, name: str) -> N
     generator = np.random.default_rng(1)
     for end in range(0, len(whole), 7):
         (tmp_path / name).write_bytes(whole[:end])
-        read_gps(tmp_path / name)
+        read_metadata(tmp_path / name)
     for _ in range(300):
         damaged = bytearray(whole)
         for place in generator.integers(0, len(whole), 4):
             damaged[place] = generator.integers(0, 256)
         (tmp_path / name).write_bytes(damaged)
-        read_gps(tmp_path / name)
+        read_metadata(tmp_path / name)
 
 
 def test_no_position(tmp_path: Path) -> None:
     PillowImage.new("RGB", (32, 32)).save(tmp_path / "plain.png")
     (tmp_path / "broken.jpg").write_bytes(b"no image")
     for name in ("plain.png", "broken.jpg", "missing.jpg"):
-        assert read_gps(tmp_path / name) is None
+        assert read_metadata(tmp_path / name).gps is None
 
 
 def test_axes_and_lengths() -> None:
@@ -103,7 +104,7 @@ def test_distances_do_not_depend_on_the_origin(
 
 def test_brighton_beach(shared_data: Path) -> None:
     paths = sorted((shared_data / "flights" / "brighton_beach").glob("*.jpg"))
-    positions = [position for path in paths if (position := read_gps(path)) is not None]
+    positions = [position for path in paths if (position := read_metadata(path).gps) is not None]
     assert len(positions) == 18
     assert positions[0].latitude == pytest.approx(46.842607, abs=1e-6)
     assert positions[0].longitude == pytest.approx(-91.994560, abs=1e-6)

@@ -13,7 +13,8 @@ from PIL import Image as PillowImage
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import TrueView
-from aerocues.datasets.gps import east_north_up, read_gps
+from aerocues.datasets.gps import east_north_up
+from aerocues.datasets.metadata import read_metadata
 from aerocues.errors import DatasetError, SimulationError
 from aerocues.simulation.camera import Pose, pinhole
 from aerocues.simulation.flight import Flown, Settings, fly
@@ -212,7 +213,7 @@ def test_positions_and_angles_are_in_the_image(tmp_path: Path, suffix: str) -> N
     gps = geodetic(pose.north, pose.east, pose.down)
     pixels = np.zeros((80, 120, 3), np.uint8)
     write_image(path, pixels, pinhole(120, 80, 90.0), pose, gps)
-    found = read_gps(path)
+    found = read_metadata(path).gps
     assert found is not None
     assert east_north_up([found], ORIGIN)[0] == pytest.approx((-75, 120, 60), abs=2e-3)
     with PillowImage.open(path) as image:

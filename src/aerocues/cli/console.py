@@ -6,12 +6,16 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from aerocues.cli.wording import in_options
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import polars as pl
     from rich.console import Console
     from rich.table import Table
+
+    from aerocues.datasets.dataset import Dataset
 
 WIDTH_OF_FILES = 100
 
@@ -22,6 +26,12 @@ def standard_output() -> Console:
 
     known = sys.stdout.isatty() or "COLUMNS" in os.environ
     return Console(width=None if known else WIDTH_OF_FILES, highlight=False, soft_wrap=False)
+
+
+def tell_images(dataset: Dataset) -> None:
+    """What was left out of a folder, and what looks odd, on standard error."""
+    for note in dataset.notes:
+        sys.stderr.write(f"{in_options(note)}\n")
 
 
 def plain_table(*headings: str, numbers: int = 0, gap: int = 2) -> Table:

@@ -110,6 +110,7 @@ def recommend(
     """
     began = time.monotonic()
     import aerocues
+    from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.live import display
     from aerocues.cli.next_commands import AsMeasured
@@ -118,6 +119,7 @@ def recommend(
         images = aerocues.open_dataset(
             dataset, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset, band=band
         )
+        tell_images(images)
         with display() as tally:
             found = aerocues.recommend(
                 images,

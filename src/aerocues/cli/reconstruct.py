@@ -146,6 +146,7 @@ def reconstruct(
     the folder succeeded.
     """
     import aerocues
+    from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.live import display
     from aerocues.modelling.reconstruct import open_as_measured
@@ -162,6 +163,7 @@ def reconstruct(
             subset=subset,
             band=band,
         )
+        tell_images(scene)
         with display() as tally:
             models = aerocues.reconstruct(
                 scene,

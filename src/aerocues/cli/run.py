@@ -135,6 +135,7 @@ def run(
     and nothing is measured twice. The exit code is 1 if every row is an error.
     """
     from aerocues.cli.cluster import engine_on
+    from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
     from aerocues.datasets.catalog import open_dataset
 
@@ -149,6 +150,7 @@ def run(
             subset=subset,
             band=band,
         )
+        tell_images(images)
         arguments: dict[str, Any] = {
             "dataset": images,
             "combinations": combinations,

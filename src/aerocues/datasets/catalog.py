@@ -12,6 +12,7 @@ from aerocues.arguments import check_whole
 from aerocues.datasets.dataset import Dataset, Source
 from aerocues.datasets.folder import folder_of, open_files
 from aerocues.datasets.kinds import CATALOG, DatasetKind
+from aerocues.datasets.listing import is_own_output
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import PairsFile, parse_pairs
 from aerocues.errors import DatasetError
@@ -83,6 +84,9 @@ def open_dataset(
         kind, target = _parse(str(spec))
         _check_pairs(kind, options)
         opened, text = kind.load(target, options), _absolute(kind, target)
+        if kind.name == "folder" and (word := str(spec).lower()) in _KINDS:
+            told = f"{spec} is a folder here; write {word}: for the kind of dataset of that name"
+            opened = replace(opened, notes=(*opened.notes, told))
     else:
         files = [Path(file).expanduser().absolute() for file in spec]
         folder = folder_of(files)
@@ -140,7 +144,7 @@ def _absolute_pairs(pairs: str | None) -> str | None:
 def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
     word, colon, rest = spec.partition(":")
     kind = _KINDS.get(word.lower())
-    if kind is not None and (colon or not Path(spec).is_dir()):
+    if kind is not None and (colon or not _means_a_folder(kind, Path(spec))):
         if not rest and kind.target_required:
             raise DatasetError(f"{kind.name} needs a folder; write {kind.name}:DIR")
         return kind, Path(rest).expanduser() if rest else None
@@ -154,6 +158,14 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
     missing = f"kind of dataset {word}" if colon else f"folder {spec}, nor a kind of dataset"
     forms = ", ".join(row.form for row in CATALOG)
     raise DatasetError(f"there is no {missing}{meant}; use {forms}")
+
+
+def _means_a_folder(kind: DatasetKind, path: Path) -> bool:
+    """Whether a word that is a kind of dataset, too, means the folder of that name.
+
+    The results of `aerocues run synthetic -o synthetic` are no images.
+    """
+    return path.is_dir() and (kind.target_required or not is_own_output(path))
 
 
 def _restricted(

@@ -190,6 +190,8 @@ class Dataset:
         How the dataset was made: pairs, size, equalisation, range of values.
     source : Source or None
         How to open it again, if known; no measurement depends on it.
+    notes : tuple of str
+        Which files were left out, and what looks odd among the images.
     """
 
     name: str
@@ -198,6 +200,7 @@ class Dataset:
     geometry: Geometry
     settings: tuple[tuple[str, str], ...] = ()
     source: Source | None = None
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         images, pairs = len(self.images), len(self.pairs)

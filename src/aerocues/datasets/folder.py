@@ -3,61 +3,49 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset, Image, Pair
 from aerocues.datasets.file_sources import file_sources, told_levels
-from aerocues.datasets.gps import read_gps
 from aerocues.datasets.header import SUFFIXES
+from aerocues.datasets.listing import (
+    Listing,
+    has_thumbnails,
+    is_own_output,
+    list_images,
+    natural_key,
+)
+from aerocues.datasets.metadata import read_metadata
+from aerocues.datasets.oddities import oddities
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import Consecutive, Names, PairStrategy, parse_pairs
 from aerocues.errors import DatasetError
-from aerocues.phrases import printable
+from aerocues.phrases import count, printable
 
 
-def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Sort key that puts ``img2`` before ``img10``, ignoring case."""
-    parts = re.split(r"([0-9]+)", name.casefold())
-    keyed = ((i % 2, int(part) if i % 2 else 0, part) for i, part in enumerate(parts))
-    return (*keyed, (0, 0, name))
-
-
-def image_paths(folder: Path, *, tree: bool = False) -> list[Path]:
-    """Image files of a folder (or of all folders below it), by suffix, in natural order.
-
-    Hidden files are skipped: some systems create a ``._NAME.jpg`` for every ``NAME.jpg``.
-    """
-    try:
-        found = list(folder.rglob("*") if tree else folder.iterdir())
-    except OSError as error:
-        raise DatasetError(
-            f"cannot read the folder {folder}: {error.strerror}; check its path"
-        ) from error
-    images = [
-        path
-        for path in found
-        if path.suffix.lower() in SUFFIXES
-        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
-        and path.is_file()
-    ]
-    return sorted(images, key=lambda path: natural_key(path.relative_to(folder).as_posix()))
+def image_paths(folder: Path) -> list[Path]:
+    """Image files of a folder, by suffix, in natural order; see `list_images`."""
+    return list(list_images(folder).images)
 
 
 def subfolders(folder: Path) -> list[Path]:
-    """Visible folders in a folder, in natural order."""
+    """Visible folders in a folder, in natural order, without thumbnails and results of aerocues."""
     try:
         found = [p for p in folder.iterdir() if p.is_dir() and not p.name.startswith(".")]
     except OSError as error:
         raise DatasetError(
             f"cannot read the folder {folder}: {error.strerror}; check its path"
         ) from error
-    return sorted(found, key=lambda path: natural_key(path.name))
+    kept = [path for path in found if not has_thumbnails(path) and not is_own_output(path)]
+    return sorted(kept, key=lambda path: natural_key(path.name))
 
 
-def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Image]:
-    """Images of files, named by their path relative to `root`, with GPS from EXIF if present.
+def file_images(
+    paths: Iterable[Path], root: Path, options: Options
+) -> tuple[list[Image], list[str]]:
+    """Images of files, named by their path relative to `root`, and what looks odd among them.
 
     Raises
     ------
@@ -74,7 +62,12 @@ def file_images(paths: Iterable[Path], root: Path, options: Options) -> list[Ima
         )
     named = {path.absolute(): name for name, path in chosen.items()}
     sources = file_sources(list(chosen.values()), options, root)
-    return [Image(named[source.path], source, read_gps(source.path)) for source in sources]
+    files = {named[source.path]: source.path for source in sources}
+    metadata = {name: read_metadata(path) for name, path in files.items()}
+    images = [
+        Image(name, source, metadata[name].gps) for name, source in zip(files, sources, strict=True)
+    ]
+    return images, oddities(files, metadata)
 
 
 def chosen_pairs(options: Options) -> tuple[PairStrategy, str]:
@@ -92,12 +85,12 @@ def open_folder(folder: Path, options: Options) -> Dataset:
     DatasetError
         If there are fewer than two images, or the pairs cannot be formed.
     """
-    return _one_scene(folder, folder_images(folder, options), options)
+    return _one_scene(folder, *folder_images(folder, options), options)
 
 
 def open_flight(folder: Path, options: Options) -> Dataset:
     """The images of a flight: of a folder and all folders below it, sorted by name."""
-    return _one_scene(folder, folder_images(folder, options, tree=True), options)
+    return _one_scene(folder, *folder_images(folder, options, tree=True), options)
 
 
 def folder_of(files: Sequence[Path]) -> Path:
@@ -120,28 +113,46 @@ def folder_of(files: Sequence[Path]) -> Path:
 
 def open_files(folder: Path, files: Sequence[Path], options: Options) -> Dataset:
     """The images of some files in a folder or below it, in their order."""
-    return _one_scene(folder, file_images(files, folder, options), options)
+    images, odd = file_images(files, folder, options)
+    return _one_scene(folder, images, told_images(len(images), [], odd), options)
 
 
-def folder_images(folder: Path, options: Options, *, tree: bool = False) -> list[Image]:
-    """The images (at least two) of a folder, or of all folders below it.
+def folder_images(
+    folder: Path, options: Options, *, tree: bool = False
+) -> tuple[list[Image], tuple[str, ...]]:
+    """The images (at least two) of a folder or of all folders below it, and a line about them.
 
     Raises
     ------
     DatasetError
         If there are fewer than two.
     """
-    paths = image_paths(folder, tree=tree)
-    images = file_images(paths, folder, options)
+    listing = list_images(folder, tree=tree)
+    images, odd = file_images(listing.images, folder, options)
     if len(images) < 2:
-        raise DatasetError(_too_few(folder, [image.name for image in images]))
-    return images
+        raise DatasetError(_too_few(folder, [image.name for image in images], listing, tree=tree))
+    return images, told_images(len(images), listing.told(), odd)
 
 
-def _one_scene(folder: Path, images: Sequence[Image], options: Options) -> Dataset:
+def told_images(taken: int, left_out: Sequence[str], odd: Sequence[str]) -> tuple[str, ...]:
+    """What was taken, what was left out and what looks odd, in one line; none if there is nothing.
+
+    ``6 images; left out: output of aerocues (models); odd: 1 identical copy (b.jpg is a.jpg)``.
+    """
+    if not left_out and not odd:
+        return ()
+    told = [count(taken, "image")]
+    told += [f"left out: {', '.join(left_out)}"] if left_out else []
+    told += [f"odd: {', '.join(odd)}"] if odd else []
+    return ("; ".join(told),)
+
+
+def _one_scene(
+    folder: Path, images: Sequence[Image], notes: tuple[str, ...], options: Options
+) -> Dataset:
     strategy, text = chosen_pairs(options)
     settings = settings_of(images, options, pairs=text)
-    return scene_of(folder, images, strategy.pairs(images), settings)
+    return replace(scene_of(folder, images, strategy.pairs(images), settings), notes=notes)
 
 
 def settings_of(
@@ -164,11 +175,12 @@ def scene_of(
     return Dataset(name, images, numbered, "epipolar", settings)
 
 
-def _too_few(folder: Path, names: Sequence[str]) -> str:
+def _too_few(folder: Path, names: Sequence[str], listing: Listing, *, tree: bool) -> str:
+    left_out = "".join(f"; left out: {each}" for each in listing.told())
     if names:
-        return f"{folder} has only one image ({names[0]}); a pair needs two: add some"
-    message = f"{folder} has no images ({', '.join(sorted(SUFFIXES))}); "
-    inside = [child.name for child in subfolders(folder) if image_paths(child)]
+        return f"{folder} has only one image ({names[0]}); a pair needs two: add some{left_out}"
+    message = f"{folder} has no images ({', '.join(sorted(SUFFIXES))}){left_out}; "
+    inside = [] if tree else [each.name for each in subfolders(folder) if image_paths(each)]
     if inside:
         return f"{message}give one of its folders ({inside[0]}), uav:{folder} or flight:{folder}"
     return message + "check the path"

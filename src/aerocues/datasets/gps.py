@@ -4,37 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import GpsPosition
-from aerocues.datasets.header import read_exif_directory
-from aerocues.errors import ImageError
 
-_GPS_DIRECTORY = 0x8825
+GPS_DIRECTORY = 0x8825
 _LATITUDE_REF, _LATITUDE, _LONGITUDE_REF, _LONGITUDE, _ALTITUDE_REF, _ALTITUDE = range(1, 7)
 
 SEMI_MAJOR_AXIS = 6_378_137.0
 FLATTENING = 1 / 298.257223563
 
 
-def read_gps(path: Path) -> GpsPosition | None:
-    """The position in the EXIF data of an image file; None if there is no valid one.
+def position_from_tags(tags: Mapping[int, Any]) -> GpsPosition | None:
+    """The position in a GPS directory of EXIF; None if there is no valid one.
 
     Latitude and longitude both exactly 0 mean that the receiver had no fix.
     """
-    try:
-        tags = read_exif_directory(path, _GPS_DIRECTORY)
-    except ImageError:
-        return None
-    return position_from_tags(tags)
-
-
-def position_from_tags(tags: Mapping[int, Any]) -> GpsPosition | None:
-    """The position in a GPS directory of EXIF, or None."""
     latitude = _degrees(tags.get(_LATITUDE), tags.get(_LATITUDE_REF), "S")
     longitude = _degrees(tags.get(_LONGITUDE), tags.get(_LONGITUDE_REF), "W")
     if latitude is None or longitude is None or (latitude == 0 and longitude == 0):

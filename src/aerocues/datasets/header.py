@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -102,15 +102,30 @@ def read_header(file: Path | bytes, name: str) -> Header:
     return _read(file, name, _parse)
 
 
-def read_exif_directory(file: Path, directory: int) -> dict[int, Any]:
-    """The tags of one directory in the EXIF data of an image file; empty if there is none.
+def read_tags(file: Path, directories: Sequence[int]) -> tuple[Header, dict[int, dict[int, Any]]]:
+    """The header and the EXIF tags of an image file.
 
-    Raises ImageError like `read_header`, and if the EXIF data are broken.
+    Parameters
+    ----------
+    file : Path
+    directories : sequence of int
+        Tags that refer to other directories, such as that of GPS.
+
+    Returns
+    -------
+    Header
+    dict of int to dict
+        The tags of each directory, and of the main one as that of 0; empty if there are none.
+
+    Raises ImageError like `read_header`.
     """
 
-    def parse(stream: IO[bytes]) -> dict[int, Any]:
+    def parse(stream: IO[bytes]) -> tuple[Header, dict[int, dict[int, Any]]]:
+        opened = _open(stream)
         # Read while the file is open: TIFF reads its tags on access.
-        return dict(_open(stream).exif.get_ifd(directory))
+        found = {0: dict(opened.exif)}
+        found |= {number: dict(opened.exif.get_ifd(number)) for number in directories}
+        return _header(opened, stream), found
 
     return _read(file, str(file), parse)
 
@@ -159,7 +174,10 @@ class _Opened:
 
 
 def _parse(stream: IO[bytes]) -> Header:
-    opened = _open(stream)
+    return _header(_open(stream), stream)
+
+
+def _header(opened: _Opened, stream: IO[bytes]) -> Header:
     orientation = opened.exif.get(_ORIENTATION, 1)
     if not isinstance(orientation, int) or not 1 <= orientation <= 8:
         orientation = 1

@@ -96,9 +96,10 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         raise DatasetError(f"{truth} is incomplete; simulate the flight again") from error
     prefix = folder.resolve().relative_to(root.resolve())
     fitted = scaled_camera(camera, options.max_width)
+    found, notes = folder_images(folder, options, tree=True)
     images = [
         _with_truth(image, (prefix / image.name).as_posix(), poses, fitted, truth)
-        for image in folder_images(folder, options, tree=True)
+        for image in found
     ]
     strategy, text = chosen_pairs(options)
     # The last image of one view and the first of the next are not consecutive.
@@ -108,7 +109,8 @@ def open_simulated(folder: Path, options: Options) -> Dataset:
         raise DatasetError(
             f'{folder} holds one image a view; use `pairs="exhaustive"` or `pairs="overlap:0.3"`'
         )
-    return scene_of(folder, images, pairs, settings_of(images, options, pairs=text))
+    settings = settings_of(images, options, pairs=text)
+    return replace(scene_of(folder, images, pairs, settings), notes=notes)
 
 
 def _by_folder(images: Sequence[Image]) -> list[list[Image]]:

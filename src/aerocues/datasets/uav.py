@@ -52,7 +52,7 @@ def _projects(folder: Path, options: Options) -> dict[str, list[Image]]:
                 f"the project {project} has only one image; add a second or move the project away"
             )
         if paths:
-            projects[project.name] = file_images(paths, folder, options)
+            projects[project.name], _ = file_images(paths, folder, options)
     if not projects:
         hint = f"; it has images itself: give it as {folder}" if image_paths(folder) else ""
         raise DatasetError(
