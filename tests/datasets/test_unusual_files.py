@@ -249,6 +249,18 @@ def test_a_tiff_that_is_cut_short_is_refused(
         FileSource(path).read()
 
 
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.8])
+def test_a_packed_tiff_with_a_hole_is_refused(tmp_path: Path, picture: Bgr, place: float) -> None:
+    large = cv2.resize(picture, (320, 240))
+    data = bytearray(tiff_bytes(large, photometric=2, deflate=True))
+    start = int(place * len(data))
+    data[start : start + 900] = bytes(900)
+    path = tmp_path / "hole.tif"
+    path.write_bytes(data)
+    with pytest.raises(ImageError, match=r"hole\.tif.*damaged"):
+        FileSource(path).read()
+
+
 def test_a_large_text_in_a_png_is_no_fault(tmp_path: Path, picture: Bgr) -> None:
     data = bytes(cv2.imencode(".png", picture)[1])
     text = b"XML:com.adobe.xmp\0\1\0\0\0" + zlib.compress(b"x" * 3_000_000)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image as PillowImage
 
+from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import GpsPosition
 from aerocues.datasets.gps import east_north_up
-from aerocues.datasets.usable_gps import UsableGps
+from aerocues.datasets.usable_gps import UsableGps, told_left_out
 
 DEGREE = 111_320.0
 
@@ -78,6 +81,23 @@ def test_nothing_is_left_out_of_a_sound_survey(
     located = usable.horizontal()
     assert located is not None
     np.testing.assert_array_equal(located, east_north_up(flight)[:, :2])
+
+
+def test_what_is_left_out_in_words() -> None:
+    assert told_left_out(dict.fromkeys("abcde", "no altitude")) == (
+        "GPS left out: a (no altitude), b (no altitude), c (no altitude) and 2 more"
+    )
+
+
+def test_pairs_by_gps_tell_the_positions_that_they_do_not_use(tmp_path: Path) -> None:
+    for number in range(5):
+        exif = PillowImage.Exif()
+        if number != 2:
+            exif[0x8825] = {1: "N", 2: (46.0, 0.0, number / 2), 3: "E", 4: (9.0, 0.0, 0.0)}
+        PillowImage.new("RGB", (32, 32), (number, 0, 0)).save(tmp_path / f"{number}.jpg", exif=exif)
+    dataset = open_dataset(str(tmp_path), pairs="gps:1")
+    assert ("1.jpg", "2.jpg") in [(pair.image_1, pair.image_2) for pair in dataset.pairs]
+    assert dataset.notes == ("GPS left out: 2.jpg (no GPS position)",)
 
 
 def test_two_sites_are_a_flight_of_two_parts() -> None:

@@ -15,7 +15,6 @@ from aerocues.methods.arrays import Keypoints
 from aerocues.reconstruction.alignment import Similarity
 from aerocues.reconstruction.diagnosis import (
     judged,
-    told_left_out,
     without_features,
     without_links,
 )
@@ -148,9 +147,6 @@ def test_images_without_a_position_do_not_count_as_in_their_place() -> None:
     truth = TruePositions("gps", found.truth.by_name, dict.fromkeys("def", "no altitude"))
     outcome = judged(IMAGES, IMAGES, WHOLE, replace(found, truth=truth), Requirements())
     assert outcome.status == "misplaced"
-    assert told_left_out(TruePositions("gps", {}, dict.fromkeys("abcde", "no altitude"))) == (
-        "GPS left out: a (no altitude), b (no altitude), c (no altitude) and 2 more"
-    )
 
 
 def flight(positions: Sequence[GpsPosition | None]) -> Dataset:

@@ -66,7 +66,8 @@ def files_of_band(paths: Sequence[Path], band: int | None, folder: Path) -> list
     if band is None or not 1 <= band <= len(labels):
         raise DatasetError(
             f"the images of {folder} are {len(labels)} bands of each exposure, in files of their "
-            f"own ({_numbered(bands)}); choose one with `band`, from 1 to {len(labels)}"
+            f"own ({_numbered(bands)}); choose one with `band`, from 1 to {len(labels)}, or "
+            "other images with `subset`"
         )
     return bands[labels[band - 1]]
 

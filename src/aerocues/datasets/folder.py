@@ -20,7 +20,8 @@ from aerocues.datasets.listing import (
 from aerocues.datasets.metadata import read_metadata
 from aerocues.datasets.oddities import oddities
 from aerocues.datasets.options import Options
-from aerocues.datasets.pairing import Consecutive, Names, PairStrategy, parse_pairs
+from aerocues.datasets.pairing import Consecutive, GpsNeighbours, Names, PairStrategy, parse_pairs
+from aerocues.datasets.usable_gps import UsableGps, told_left_out
 from aerocues.errors import DatasetError
 from aerocues.phrases import count, printable
 
@@ -152,7 +153,12 @@ def _one_scene(
 ) -> Dataset:
     strategy, text = chosen_pairs(options)
     settings = settings_of(images, options, pairs=text)
-    return replace(scene_of(folder, images, strategy.pairs(images), settings), notes=notes)
+    scene = scene_of(folder, images, strategy.pairs(images), settings)
+    if isinstance(strategy, GpsNeighbours):
+        faults = UsableGps.of([image.gps for image in images]).in_plan
+        left_out = {image.name: why for image, why in zip(images, faults, strict=True) if why}
+        notes = (*notes, told_left_out(left_out)) if left_out else notes
+    return replace(scene, notes=notes)
 
 
 def settings_of(

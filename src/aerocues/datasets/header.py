@@ -157,8 +157,8 @@ def unreadable(name: str, error: OSError) -> str:
 
 def _not_an_image(name: str) -> ImageError:
     return ImageError(
-        f"{name} is not a readable image (JPEG, PNG, TIFF, BMP, WebP or PPM/PGM); convert it, or "
-        "remove it from the folder"
+        f"{name} is not a readable image (JPEG, PNG, TIFF, BMP, WebP or PPM/PGM); copy it again, "
+        "convert it, or remove it from the folder"
     )
 
 

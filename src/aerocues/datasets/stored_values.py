@@ -131,10 +131,8 @@ def _oriented(stored: Any, header: Header) -> Any:
 def _from_tiff(data: bytes, header: Header, band: int | None) -> StoredValues:
     several = len(header.pages) > 1
     page = header.pages[(band or 1) - 1 if several else 0]
-    if page.ends() > len(data):
-        raise UndecodableError(
-            "it is truncated (its last rows are missing); copy or export it again"
-        )
+    if damage := page.damage(data):
+        raise UndecodableError(f"{damage}; copy or export it again")
     if page.bands > 1 and not several:
         values = _oriented(_one_of_many(data, page, (band or 1) - 1), header)
         return _finished(StoredValues(values), page)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import IO, Any, Literal
@@ -17,6 +18,8 @@ NODATA = 42113
 """GDAL's tag for the value of pixels without content."""
 MIN_IS_WHITE, RGB, PALETTE, CMYK = 0, 2, 3, 5
 REDUCED, MASK = 1, 4
+DEFLATE = (8, 32946)
+UNPACKED_AT_ONCE = 1 << 22
 MOST_PAGES = 1000
 DECODABLE_SAMPLES = 4
 _LONG = 4
@@ -77,15 +80,38 @@ class Page:
         except (KeyError, ValueError):
             return None
 
-    def ends(self) -> int:
-        """Where the last of its strips or tiles ends in the file."""
+    def spans(self) -> list[tuple[int, int]]:
+        """Where each of its strips or tiles begins and ends in the file."""
         starts, sizes = (self.tags.get(tag, ()) for tag in self.parts)
-        return max((int(a) + int(b) for a, b in zip(starts, sizes, strict=False)), default=0)
+        return [(int(a), int(a) + int(b)) for a, b in zip(starts, sizes, strict=False)]
+
+    def damage(self, data: bytes) -> str | None:
+        """What is wrong with its strips or tiles without decoding them, or None."""
+        spans = self.spans()
+        if max((end for _, end in spans), default=0) > len(data):
+            return "it is truncated (its last rows are missing)"
+        # libtiff ignores the checksum at the end of what zlib packed.
+        packed = self.number(COMPRESSION) in DEFLATE
+        if packed and not all(_is_whole(data[start:end]) for start, end in spans if start < end):
+            return "it is damaged (checksum of a strip)"
+        return None
 
     @property
     def parts(self) -> tuple[int, int]:
         """The tags of where its strips or tiles begin, and of their sizes."""
         return (TILES, TILE_SIZES) if TILES in self.tags else (STRIPS, STRIP_SIZES)
+
+
+def _is_whole(packed: bytes) -> bool:
+    """Whether zlib unpacks bytes to their end."""
+    unpacking = zlib.decompressobj()
+    try:
+        while packed and not unpacking.eof:
+            unpacking.decompress(packed, UNPACKED_AT_ONCE)
+            packed = unpacking.unconsumed_tail
+    except zlib.error:
+        return False
+    return unpacking.eof
 
 
 def all_pages(stream: IO[bytes]) -> list[Page]:

@@ -6,7 +6,7 @@ that copies tags loses altitudes. One such position would stretch the extent of 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,8 @@ FEWEST = 4
 """Of fewer positions, none can be told to be far from the others."""
 SEA_LEVEL = 10.0
 """Metres: an altitude of exactly 0 is a missing one if no other is as low as this."""
+
+MOST_NAMED = 3
 
 Array = NDArray[np.float64]
 Faults = list[str | None]
@@ -70,6 +72,13 @@ class UsableGps:
         located = east_north_up([self.positions[number] or _NOWHERE for number in known])[:, :2]
         order = np.arange(len(self.positions))
         return np.column_stack([np.interp(order, known, axis) for axis in located.T])
+
+
+def told_left_out(left_out: Mapping[str, str]) -> str:
+    """``GPS left out: a (altitude 0), b (5.5 km from the others)``, from reasons by name."""
+    listed = [f"{name} ({why})" for name, why in list(left_out.items())[:MOST_NAMED]]
+    more = f" and {len(left_out) - MOST_NAMED} more" if len(left_out) > MOST_NAMED else ""
+    return f"GPS left out: {', '.join(listed)}{more}"
 
 
 _NOWHERE = GpsPosition(0.0, 0.0)

@@ -14,7 +14,7 @@ from aerocues.reconstruction.colmap import open_database
 from aerocues.reconstruction.match_graph import LISTED, parts_of, told_parts
 from aerocues.reconstruction.matched_scene import Names
 from aerocues.reconstruction.protocol import Requirements
-from aerocues.reconstruction.truth import GPS_IN_PLAN, Located, TruePositions
+from aerocues.reconstruction.truth import GPS_IN_PLAN, Located
 
 # COLMAP's requirements for the initial pair, after relaxing them twice.
 INITIAL_INLIERS = 25
@@ -111,13 +111,6 @@ def told_place(located: Located) -> str:
         f"{len(far)} of {len(errors)} cameras {are} more than {located.tolerance[0]:.1f} m from "
         f"{their} true position{'s' * (len(far) > 1)} ({located.truth.source}): {listed}{more}"
     )
-
-
-def told_left_out(truth: TruePositions) -> str:
-    """``GPS left out: a (altitude 0), b (5.5 km from the others)``."""
-    listed = [f"{name} ({why})" for name, why in list(truth.left_out.items())[:LISTED]]
-    more = f" and {len(truth.left_out) - LISTED} more" if len(truth.left_out) > LISTED else ""
-    return f"GPS left out: {', '.join(listed)}{more}"
 
 
 def _mostly_far(located: Located, requirements: Requirements) -> bool:

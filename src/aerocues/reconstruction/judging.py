@@ -7,10 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from aerocues.datasets.usable_gps import told_left_out
 from aerocues.methods.combination import Combination
 from aerocues.phrases import count
 from aerocues.reconstruction.colmap import registered
-from aerocues.reconstruction.diagnosis import Outcome, judged, told_left_out
+from aerocues.reconstruction.diagnosis import Outcome, judged
 from aerocues.reconstruction.exports import export_model, undistort
 from aerocues.reconstruction.match_graph import LISTED
 from aerocues.reconstruction.matched_scene import Names
@@ -86,7 +87,7 @@ def _told_truth(truth: TruePositions | None, located: Located | None) -> list[st
     """Which positions are left out, and why the place of a model is not known, if it is not."""
     if truth is None:
         return []
-    told = [told_left_out(truth)] if truth.left_out else []
+    told = [told_left_out(truth.left_out)] if truth.left_out else []
     if not truth.known:
         told.append(f"{UNKNOWN_PLACE}: fewer than three different positions can be used")
     elif located is None:
