@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image as PillowImage
 
+from aerocues.datasets import listing
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.listing import list_images
 from aerocues.datasets.metadata import Metadata
@@ -87,12 +88,15 @@ def test_links_are_followed_once(flight: Path, tmp_path: Path) -> None:
     )
 
 
-def test_files_of_other_kinds_are_named_with_what_to_do(flight: Path) -> None:
+def test_files_of_other_kinds_are_named_with_what_to_do(
+    flight: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(listing, "can_read_heic", lambda: False)
     for name in ("a.HEIC", "b.heif", "a.DNG", "flight.MP4"):
         (flight / name).write_bytes(b"no image")
     (flight / "._0.jpg").write_bytes(b"")
     [note] = open_dataset(str(flight)).notes
-    assert "2 HEIC files (a.HEIC, b.heif): convert" in note
+    assert "2 HEIC files (a.HEIC, b.heif): install pillow-heif" in note
     assert "1 raw file (a.DNG): export" in note
     assert "1 video file (flight.MP4)" in note
     assert "1 hidden file" in note

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image as PillowImage
 
 from aerocues.datasets.catalog import open_dataset
+from aerocues.datasets.dataset import GpsPosition
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.levels import Levels, robust_levels
 from aerocues.errors import DatasetError, ImageError
@@ -285,3 +286,28 @@ def test_a_webp_of_many_megapixels_costs_no_memory(tmp_path: Path, picture: Bgr)
         pixels = np.concatenate([picture, alpha], axis=2)[..., :channels]
         path.write_bytes(bytes(cv2.imencode(".webp", pixels, options)[1]))
         assert FileSource(path).size() == (80, 60)
+
+
+@pytest.mark.parametrize("orientation", [1, 6])
+def test_heic_is_read_where_pillow_heif_is_installed(
+    tmp_path: Path, picture: Bgr, orientation: int
+) -> None:
+    heif = pytest.importorskip("pillow_heif")
+    rgb = np.ascontiguousarray(picture[..., ::-1])
+    turned = rgb if orientation == 1 else np.ascontiguousarray(np.rot90(rgb))
+    exif = PillowImage.Exif()
+    exif[274], exif[272] = orientation, "Phone"
+    exif[0x8825] = {1: "N", 2: (46.0, 30.0, 0.0), 3: "E", 4: (9.0, 0.0, 0.0)}
+    for name in ("a.heic", "b.heic"):
+        image = heif.from_pillow(PillowImage.fromarray(turned))
+        image.save(tmp_path / name, quality=95, exif=exif.tobytes())
+    dataset = open_dataset(str(tmp_path))
+    assert len(dataset.images) == 2
+    bgr = dataset.images[0].read().bgr
+    assert bgr.shape == picture.shape
+    assert float(np.abs(bgr.astype(int) - picture).mean()) < 8
+    assert dataset.images[0].gps == GpsPosition(46.5, 9.0)
+    path = tmp_path / "a.heic"
+    path.write_bytes(path.read_bytes()[:-300])
+    with pytest.raises(ImageError, match=r"a\.heic"):
+        FileSource(path).read()

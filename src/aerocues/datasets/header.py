@@ -10,6 +10,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import IO, Any, TypeVar
 
+from aerocues.datasets.heic import BRANDS, INSTALL, open_heic
 from aerocues.datasets.integrity import without_text
 from aerocues.datasets.tiff import (
     CMYK,
@@ -47,7 +48,7 @@ class Header:
     Parameters
     ----------
     format : str
-        ``JPEG, PNG, TIFF, BMP, WEBP`` or ``PPM``.
+        ``JPEG, PNG, TIFF, BMP, WEBP, PPM`` or ``HEIC``.
     mode : str
         Pillow's name of the pixel format, such as ``RGB`` or ``I;16``.
     stored_width, stored_height : int
@@ -145,6 +146,8 @@ def _read(file: Path | bytes, name: str, parse: Callable[[IO[bytes]], _Result]) 
         if isinstance(file, Path) and error.errno is not None:
             raise ImageError(unreadable(name, error)) from error
         raise _not_an_image(name) from error
+    except ImportError as error:
+        raise ImageError(f"{name} is a HEIC file: {INSTALL}") from error
     except Exception as error:  # Pillow's readers may raise anything on bytes that are damaged
         raise _not_an_image(name) from error
 
@@ -178,7 +181,7 @@ def _parse(stream: IO[bytes]) -> Header:
 
 
 def _header(opened: _Opened, stream: IO[bytes]) -> Header:
-    orientation = opened.exif.get(_ORIENTATION, 1)
+    orientation = 1 if opened.format == "HEIC" else opened.exif.get(_ORIENTATION, 1)
     if not isinstance(orientation, int) or not 1 <= orientation <= 8:
         orientation = 1
     sample_type = (
@@ -195,15 +198,20 @@ def _open(stream: IO[bytes]) -> _Opened:
     stream.seek(0)
     if name == "TIFF":
         return _open_tiff(stream)
-    if name == "WEBP":
-        mode, size, information = read_webp(stream)
+    if name in ("WEBP", "HEIC"):
         image: Any = Image.Image()
-        image.info = information
+        mode, size, image.info = read_webp(stream) if name == "WEBP" else _read_heic(stream)
     else:
         image = _opened_by_pillow(name, stream)
         mode, size = image.mode, image.size
     # Not image.getexif(): for PNG it decodes all pixels to find EXIF behind them.
     return _Opened(name, mode, size, Image.Image.getexif(image))
+
+
+def _read_heic(stream: IO[bytes]) -> tuple[str, tuple[int, int], dict[str, Any]]:
+    """Pixel format, size and metadata; the image is turned upright when it is decoded."""
+    image = open_heic(stream.read())
+    return image.mode, image.size, {"exif": image.info.get("exif")}
 
 
 def _opened_by_pillow(name: str, stream: IO[bytes]) -> Any:
@@ -257,6 +265,8 @@ def _format(start: bytes) -> str:
     for name, signatures in _SIGNATURES:
         if start.startswith(signatures) and (name != "WEBP" or start[8:12] == b"WEBP"):
             return name
+    if start[4:8] == b"ftyp" and start[8:12] in BRANDS:
+        return "HEIC"
     raise ValueError("unknown signature")
 
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aerocues.datasets.header import SUFFIXES
+from aerocues.datasets.heic import INSTALL, can_read_heic
+from aerocues.datasets.heic import SUFFIXES as HEIC_SUFFIXES
 from aerocues.errors import DatasetError
 from aerocues.phrases import count, printable
 
@@ -19,14 +21,18 @@ BROKEN_LINKS = "broken links"
 SEEN_TWICE = "the same by a link"
 
 OTHERS: tuple[tuple[str, str, frozenset[str]], ...] = (
-    ("HEIC", "convert them to JPEG", frozenset({".heic", ".heif", ".hif", ".avif"})),
+    ("HEIC", INSTALL, HEIC_SUFFIXES),
     (
         "raw",
         "export them as TIFF or JPEG",
         frozenset({".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".srw"}),
     ),
     ("video", "save frames of them as images", frozenset({".mp4", ".mov", ".avi", ".mkv", ".mts"})),
-    ("JPEG 2000 or GIF", "convert them to PNG", frozenset({".jp2", ".j2k", ".jxl", ".gif"})),
+    (
+        "AVIF, JPEG 2000 or GIF",
+        "convert them to PNG",
+        frozenset({".avif", ".jp2", ".j2k", ".jxl", ".gif"}),
+    ),
 )
 """Kinds of files that may be meant, what to do with them, and their suffixes."""
 
@@ -107,6 +113,7 @@ class _Search:
         self._images: dict[str, Path] = {}
         self._left_out: dict[str, list[str]] = {}
         self._seen: set[str] = set()
+        self._suffixes = SUFFIXES | (HEIC_SUFFIXES if can_read_heic() else frozenset())
 
     def listing(self) -> Listing:
         self._look_into(self._root)
@@ -158,13 +165,15 @@ class _Search:
 
     def _file(self, path: Path) -> None:
         suffix = path.suffix.lower()
+        if suffix in self._suffixes:
+            if path.is_file():
+                self._images[path.relative_to(self._root).as_posix()] = path
+            elif path.is_symlink():
+                self._leave_out(BROKEN_LINKS, path)
+            return
         kind = next((kind for kind, _, suffixes in OTHERS if suffix in suffixes), None)
         if kind is not None:
             self._leave_out(kind, path)
-        elif suffix in SUFFIXES and path.is_file():
-            self._images[path.relative_to(self._root).as_posix()] = path
-        elif suffix in SUFFIXES and path.is_symlink():
-            self._leave_out(BROKEN_LINKS, path)
 
     def _leave_out(self, reason: str, path: Path) -> None:
         self._left_out.setdefault(reason, []).append(path.relative_to(self._root).as_posix())

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.decoder_messages import with_messages
 from aerocues.datasets.header import Header
+from aerocues.datasets.heic import decode_heic
 from aerocues.datasets.integrity import find_complaint, find_damage
 from aerocues.datasets.tiff import (
     MIN_IS_WHITE,
@@ -83,6 +84,8 @@ def stored_values(
     check_band(header, band)
     if header.format == "TIFF":
         return _from_tiff(data, header, band)
+    if header.format == "HEIC":
+        return _one_colour(_masked(_decoded_heic(data)), band)
     if header.format == "JPEG":
         flag = REDUCED.get(reduction, cv2.IMREAD_COLOR) | cv2.IMREAD_IGNORE_ORIENTATION
     else:
@@ -114,6 +117,13 @@ def _decoded(data: bytes, flag: int) -> Any:
     if found is None:
         raise UndecodableError(UNKNOWN_DAMAGE)
     return found
+
+
+def _decoded_heic(data: bytes) -> NDArray[Any]:
+    try:
+        return decode_heic(data)
+    except (ValueError, RuntimeError, EOFError, OSError) as error:
+        raise UndecodableError(f"it is damaged ({error}); copy or export it again") from error
 
 
 def _oriented(stored: Any, header: Header) -> Any:
