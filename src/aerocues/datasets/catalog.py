@@ -12,7 +12,7 @@ from aerocues.arguments import check_whole
 from aerocues.datasets.dataset import Dataset, Source
 from aerocues.datasets.folder import folder_of, open_files
 from aerocues.datasets.kinds import CATALOG, DatasetKind
-from aerocues.datasets.listing import is_own_output
+from aerocues.datasets.listing import VIDEO_SUFFIXES, is_own_output
 from aerocues.datasets.options import Options
 from aerocues.datasets.pairing import PairsFile, parse_pairs
 from aerocues.errors import DatasetError
@@ -151,6 +151,9 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
     path = Path(spec).expanduser()
     if path.is_dir():
         return _KINDS["folder"], path
+    if path.is_file() and path.suffix.lower() in VIDEO_SUFFIXES:
+        frames = f"ffmpeg -i {path} -vf fps=1 frames/%05d.jpg"
+        raise DatasetError(f"{spec} is a video; save frames of it, and give their folder: {frames}")
     if path.is_file():
         raise DatasetError(f"{spec} is a file; give its folder, or synthetic:{spec}")
     close = get_close_matches(word.lower(), _KINDS, n=1)

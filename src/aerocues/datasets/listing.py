@@ -20,6 +20,7 @@ OWN_OUTPUT = "output of aerocues"
 BROKEN_LINKS = "broken links"
 SEEN_TWICE = "the same by a link"
 
+VIDEO_SUFFIXES = frozenset({".mp4", ".mov", ".avi", ".mkv", ".mts", ".m4v"})
 OTHERS: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("HEIC", INSTALL, HEIC_SUFFIXES),
     (
@@ -27,7 +28,7 @@ OTHERS: tuple[tuple[str, str, frozenset[str]], ...] = (
         "export them as TIFF or JPEG",
         frozenset({".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".rw2", ".orf", ".srw"}),
     ),
-    ("video", "save frames of them as images", frozenset({".mp4", ".mov", ".avi", ".mkv", ".mts"})),
+    ("video", "save frames of them as images", VIDEO_SUFFIXES),
     (
         "AVIF, JPEG 2000 or GIF",
         "convert them to PNG",

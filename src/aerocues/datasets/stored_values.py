@@ -14,6 +14,7 @@ from aerocues.datasets.header import Header
 from aerocues.datasets.heic import decode_heic
 from aerocues.datasets.integrity import find_complaint, find_damage
 from aerocues.datasets.tiff import (
+    DECODABLE_SAMPLES,
     MIN_IS_WHITE,
     PALETTE,
     PHOTOMETRIC,
@@ -100,6 +101,8 @@ def check_band(header: Header, band: int | None) -> None:
             f"it has {header.bands} bands; choose one with `band`, from 1 to {header.bands}"
         )
     count = max(header.bands, 1 if header.gray else COLOURS)
+    if header.pages and header.pages[0].colours_by_band:
+        count = header.pages[0].samples
     if band is not None and not 1 <= band <= count:
         one = "band" if count == 1 else "bands"
         raise UndecodableError(f"it has {count} {one} and no band {band}; give another `band`")
@@ -143,14 +146,23 @@ def _from_tiff(data: bytes, header: Header, band: int | None) -> StoredValues:
     page = header.pages[(band or 1) - 1 if several else 0]
     if damage := page.damage(data):
         raise UndecodableError(f"{damage}; copy or export it again")
-    if page.bands > 1 and not several:
-        values = _oriented(_one_of_many(data, page, (band or 1) - 1), header)
-        return _finished(StoredValues(values), page)
+    if not several and (page.bands > 1 or page.colours_by_band):
+        return _finished(_by_band(data, header, page, band), page)
     content = data if is_first(data, page) else alone(data, page)
     # The four channels of CMYK would be read as colour and alpha.
     flag = cv2.IMREAD_COLOR if header.mode == "CMYK" else cv2.IMREAD_UNCHANGED
     decoded = _decoded(content, flag)
     return _one_colour(_finished(_masked(decoded), page), None if several else band)
+
+
+def _by_band(data: bytes, header: Header, page: Page, band: int | None) -> StoredValues:
+    """A band, or the colours, each by itself."""
+    order = (2, 1, 0) if band is None else (band - 1,)
+    planes = [_oriented(_one_of_many(data, page, each), header) for each in order]
+    valid = None
+    if page.has_alpha and page.samples == DECODABLE_SAMPLES:
+        valid = _oriented(_one_of_many(data, page, DECODABLE_SAMPLES - 1), header) > 0
+    return StoredValues(planes[0] if len(planes) == 1 else np.dstack(planes), valid)
 
 
 def _one_of_many(data: bytes, page: Page, band: int) -> NDArray[Any]:

@@ -67,10 +67,22 @@ class Page:
     @property
     def bands(self) -> int:
         """Measured bands that are no colours; 1 for gray and colour images."""
-        extra = self.tags.get(EXTRA, ())
         coloured = self.number(PHOTOMETRIC) not in (MIN_IS_WHITE, 1)
-        alpha = any(value in (1, 2) for value in extra)
-        return 1 if (coloured or alpha) and self.samples <= DECODABLE_SAMPLES else self.samples
+        known = coloured or self.has_alpha
+        return 1 if known and self.samples <= DECODABLE_SAMPLES else self.samples
+
+    @property
+    def has_alpha(self) -> bool:
+        """Whether a sample tells how opaque a pixel is."""
+        return any(value in (1, 2) for value in self.tags.get(EXTRA, ()))
+
+    @property
+    def colours_by_band(self) -> bool:
+        """Whether OpenCV would take another band for alpha, or not find all of the colours."""
+        if self.number(PHOTOMETRIC) != RGB or not 3 <= self.samples <= DECODABLE_SAMPLES:
+            return False
+        infrared = self.samples == 4 and EXTRA in self.tags and not self.has_alpha
+        return infrared or (self.number(PLANAR, 1) == 2 and self.sample_type != "uint8")
 
     @property
     def nodata(self) -> float | None:
