@@ -14,7 +14,7 @@ def test_the_catalog_is_complete() -> None:
     names = [kind.name for kind in CATALOG]
     assert names == [
         "synthetic", "synthetic-extended", "oxford", "hpatches", "uav", "flight", "simulated",
-        "airsim", "folder",
+        "airsim", "video", "folder",
     ]  # fmt: skip
     for kind in CATALOG:
         assert all([kind.pairs, kind.ground_truth, kind.needs, kind.layout, kind.where, kind.terms])

@@ -106,12 +106,6 @@ def test_files_of_other_kinds_are_named_with_what_to_do(
         open_dataset(str(flight))
 
 
-def test_a_video_is_told_with_what_to_do(flight: Path) -> None:
-    (flight / "a.MP4").write_bytes(b"")
-    with pytest.raises(DatasetError, match=r"is a video.*ffmpeg"):
-        open_dataset(str(flight / "a.MP4"))
-
-
 def test_what_looks_odd_is_told(flight: Path) -> None:
     shutil.copy(flight / "0.jpg", flight / "copy.jpg")
     photo(flight / "small.jpg", 7, (20, 15))

@@ -24,6 +24,7 @@ class AsMeasured:
     images : str
     pairs, subset : str or None
     band : int or None
+    every : str or None
     equalize : str
     max_width : int
         0 for the full size.
@@ -39,6 +40,7 @@ class AsMeasured:
     pairs: str | None
     subset: str | None
     band: int | None
+    every: str | None
     equalize: str
     max_width: int
     preset: str
@@ -58,6 +60,7 @@ class AsMeasured:
             ("--pairs", self.pairs, None),
             ("--subset", self.subset, None),
             ("--band", self.band, None),
+            ("--every", self.every, None),
             ("--equalize", self.equalize, "none"),
             ("--max-width", self.max_width, 0),
             ("--preset", self.preset, "default"),

@@ -99,6 +99,12 @@ BandOption = Annotated[
         min=1, metavar="N", help="Band of multispectral images, 1 to the number of bands."
     ),
 ]
+EveryOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="TIME", help="Time between two frames of a video, such as 2s; 1s by default."
+    ),
+]
 SequencesOption = Annotated[
     str | None,
     typer.Option(metavar="GLOBS", help="Use only these sequences, such as 'graf,b*'."),

@@ -15,6 +15,7 @@ from aerocues.cli.options import (
     CombinationsOption,
     DatasetArgument,
     EqualizeOption,
+    EveryOption,
     MaxKeypointsOption,
     MaxWidthOption,
     MethodPresetOption,
@@ -88,6 +89,7 @@ def recommend(
     ] = RACE_PAIRS,
     subset: SubsetOption = None,
     band: BandOption = None,
+    every: EveryOption = None,
     equalize: EqualizeOption = "none",
     sure: Annotated[
         float,
@@ -117,7 +119,13 @@ def recommend(
 
     with interruptible():
         images = aerocues.open_dataset(
-            dataset, pairs=pairs, max_width=max_width, equalize=equalize, subset=subset, band=band
+            dataset,
+            pairs=pairs,
+            max_width=max_width,
+            equalize=equalize,
+            subset=subset,
+            band=band,
+            every=every,
         )
         tell_images(images)
         with display() as tally:
@@ -139,7 +147,7 @@ def recommend(
                 progress=tally,
             )
         _print(found, top, explain=explain)
-        opened = (dataset, pairs, subset, band, equalize, _shrunk(images, max_width))
+        opened = (dataset, pairs, subset, band, every, equalize, _shrunk(images, max_width))
         same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()))
         _print_next(found, same)
         if report is not None:

@@ -15,6 +15,7 @@ from aerocues.cli.options import (
     BandOption,
     CombinationsOption,
     EqualFootingOption,
+    EveryOption,
     MaxKeypointsOption,
     MaxWidthOption,
     MemoryLimitOption,
@@ -77,6 +78,7 @@ def reconstruct(
     pairs: PairsOption = None,
     subset: SubsetOption = None,
     band: BandOption = None,
+    every: EveryOption = None,
     sequences: SequencesOption = None,
     max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
     max_width: MaxWidthOption = None,
@@ -162,6 +164,7 @@ def reconstruct(
             sequences=sequences,
             subset=subset,
             band=band,
+            every=every,
         )
         tell_images(scene)
         with display() as tally:

@@ -17,6 +17,7 @@ from aerocues.cli.options import (
     DescriptorsOption,
     DetectorsOption,
     EqualizeOption,
+    EveryOption,
     EverythingOption,
     FeaturesOption,
     MaxKeypointsOption,
@@ -81,6 +82,7 @@ def run(
     pairs: PairsOption = None,
     subset: SubsetOption = None,
     band: BandOption = None,
+    every: EveryOption = None,
     max_pairs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Use only the first N pairs.")
     ] = None,
@@ -149,6 +151,7 @@ def run(
             sequences=sequences,
             subset=subset,
             band=band,
+            every=every,
         )
         tell_images(images)
         arguments: dict[str, Any] = {

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from aerocues.arguments import check_whole
+from aerocues.arguments import check_whole, seconds_of
 from aerocues.datasets.dataset import Dataset, Source
 from aerocues.datasets.folder import folder_of, open_files
 from aerocues.datasets.kinds import CATALOG, DatasetKind
@@ -34,6 +34,7 @@ def open_dataset(
     sequences: str | Sequence[str] | None = None,
     subset: str | None = None,
     band: int | None = None,
+    every: float | str | None = None,
 ) -> Dataset:
     """Open images to measure on.
 
@@ -42,7 +43,7 @@ def open_dataset(
     spec : str, path or sequence of paths
         ``synthetic[:IMAGE]``, ``synthetic-extended[:IMAGE]``, ``oxford:DIR``, ``hpatches:DIR``,
         ``uav:DIR``, ``flight:DIR``, ``simulated:DIR``, ``airsim:DIR``, the path of a plain
-        folder, or two or more image files of one scene, in their order.
+        folder or of a video, or two or more image files of one scene, in their order.
     pairs : str, optional
         ``consecutive``, ``consecutive:K``, ``exhaustive``, ``gps``, ``gps:K``, ``gps:50m``,
         ``overlap:0.3-0.9`` or the path of a pairs file; only for kinds without pairs of their own.
@@ -63,6 +64,8 @@ def open_dataset(
     band : int, optional
         The band of multispectral images, from 1 on: in files of several bands, or among files of
         one band each; of colour images 1 is red, 2 green and 3 blue.
+    every : float or str, optional
+        Time between two frames of a video: seconds, or a text such as ``"2s"``; 1 s by default.
 
     Returns
     -------
@@ -79,7 +82,8 @@ def open_dataset(
     if max_pairs is not None:
         check_whole("max_pairs", max_pairs, 1)
     max_width = max_width or None
-    options = Options(pairs, max_width, equalize, subset, band)
+    seconds = None if every is None else seconds_of("every", every)
+    options = Options(pairs, max_width, equalize, subset, band, seconds)
     if isinstance(spec, str | Path):
         kind, target = _parse(str(spec))
         _check_pairs(kind, options)
@@ -101,6 +105,7 @@ def open_dataset(
         sequences=names,
         subset=subset,
         band=band,
+        every=seconds,
     )
     return replace(_restricted(opened, max_pairs, sequences), source=source)
 
@@ -152,8 +157,7 @@ def _parse(spec: str) -> tuple[DatasetKind, Path | None]:
     if path.is_dir():
         return _KINDS["folder"], path
     if path.is_file() and path.suffix.lower() in VIDEO_SUFFIXES:
-        frames = f"ffmpeg -i {path} -vf fps=1 frames/%05d.jpg"
-        raise DatasetError(f"{spec} is a video; save frames of it, and give their folder: {frames}")
+        return _KINDS["video"], path
     if path.is_file():
         raise DatasetError(f"{spec} is a file; give its folder, or synthetic:{spec}")
     close = get_close_matches(word.lower(), _KINDS, n=1)

@@ -160,7 +160,7 @@ class Source:
     ----------
     spec : str
         Text form of the dataset, with an absolute path.
-    pairs, max_width, equalize, max_pairs, sequences, subset, band
+    pairs, max_width, equalize, max_pairs, sequences, subset, band, every
         See `open_dataset`; the names of sequences as one text.
     """
 
@@ -172,6 +172,7 @@ class Source:
     sequences: str | None = None
     subset: str | None = None
     band: int | None = None
+    every: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

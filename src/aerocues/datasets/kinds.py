@@ -13,6 +13,7 @@ from aerocues.datasets.options import Options
 from aerocues.datasets.simulated import open_simulated
 from aerocues.datasets.synthetic import open_synthetic
 from aerocues.datasets.uav import open_uav
+from aerocues.datasets.video import open_video
 from aerocues.errors import DatasetError
 
 
@@ -45,7 +46,7 @@ class DatasetKind:
     takes_pairs : bool
         Whether the user may choose the pairs.
     target : str or None
-        What follows the colon: ``DIR`` or ``IMAGE``.
+        What follows the colon: ``DIR``, ``IMAGE`` or ``FILE``.
     target_required : bool
         Whether the target is required.
     """
@@ -74,6 +75,12 @@ def _in_folder(
         return load(folder, options)
 
     return load_existing
+
+
+def _load_video(path: Path | None, options: Options) -> Dataset:
+    if path is None or not path.is_file():
+        raise DatasetError(f"there is no video {path}; check the path")
+    return open_video(path, options)
 
 
 CATALOG: tuple[DatasetKind, ...] = (
@@ -184,6 +191,20 @@ CATALOG: tuple[DatasetKind, ...] = (
         terms="those of the simulator's scene",
         load=_in_folder(open_simulated),
         takes_pairs=True,
+    ),
+    DatasetKind(
+        name="video",
+        form="video:FILE",
+        pairs="as chosen; consecutive frames by default",
+        ground_truth="GPS positions from subtitles of the drone beside it, if present",
+        needs="a video that OpenCV reads; one frame a second is taken, or as --every says",
+        layout="FILE.MP4, FILE.SRT",
+        geometry="epipolar",
+        where="your own",
+        terms="your own",
+        load=_load_video,
+        takes_pairs=True,
+        target="FILE",
     ),
     DatasetKind(
         name="folder",

@@ -27,6 +27,8 @@ class Options:
     band : int or None
         The band of multispectral images to read, from 1 on, in files of several bands or among
         files of one band each.
+    every : float or None
+        Seconds between two frames of a video.
     """
 
     pairs: str | None = None
@@ -34,6 +36,7 @@ class Options:
     equalize: str = "none"
     subset: str | None = None
     band: int | None = None
+    every: float | None = None
 
     def __post_init__(self) -> None:
         check_settings(self.max_width, self.equalize)

@@ -201,12 +201,13 @@ def open_as_measured(
     sequences: str | None = None,
     subset: str | None = None,
     band: int | None = None,
+    every: float | str | None = None,
 ) -> Dataset:
     """The scene, read as results of it were measured where nothing else is asked for.
 
     Parameters
     ----------
-    dataset, pairs, max_width, equalize, sequences, subset, band
+    dataset, pairs, max_width, equalize, sequences, subset, band, every
         As `aerocues.open_dataset` takes them, so that a `max_width` of 0 is for images as they are
         whatever the results were measured on; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
@@ -226,6 +227,7 @@ def open_as_measured(
         sequences=sequences,
         subset=subset or measured.get("subset"),
         band=band,
+        every=every or measured.get("every"),
     )
 
 
@@ -238,11 +240,11 @@ def best_combinations(results: Results, dataset: str, top: int) -> list[str]:
 
 
 def settings_of_results(results: Results | None) -> dict[str, str]:
-    """How images of results were read: ``max_width``, ``equalize``, ``subset`` and ``band``."""
+    """How images of results were read: the names of options and their values."""
     if results is None:
         return {}
     read = (results.settings.get("dataset") or {}).get("settings", {})
-    wanted = ("max_width", "equalize", "subset", "band")
+    wanted = ("max_width", "equalize", "subset", "band", "every")
     return {name: str(read[name]) for name in wanted if read.get(name) is not None}
 
 

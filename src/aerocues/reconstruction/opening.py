@@ -23,6 +23,7 @@ def open_scene(
     sequences: str | Sequence[str] | None = None,
     subset: str | None = None,
     band: int | None = None,
+    every: float | str | None = None,
 ) -> Dataset:
     """Open a dataset to reconstruct it.
 
@@ -31,7 +32,7 @@ def open_scene(
 
     Parameters
     ----------
-    spec, pairs, max_width, equalize, sequences, subset, band
+    spec, pairs, max_width, equalize, sequences, subset, band, every
         As in `aerocues.open_dataset`.
 
     Raises
@@ -47,6 +48,7 @@ def open_scene(
         sequences=sequences,
         subset=subset,
         band=band,
+        every=every,
     )
     scene = opened(pairs=pairs)
     if pairs is not None or not _has_choice(scene):

@@ -60,6 +60,8 @@ def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[st
     }
     if (band := measured["settings"].get("band")) is not None:
         options["band"] = int(band)
+    if (every := measured["settings"].get("every")) is not None:
+        options["every"] = float(every)
     for spec in moved:
         dataset = open_dataset(spec, **options)
         if not _missing(dataset, found):
