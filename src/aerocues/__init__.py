@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from aerocues.errors import AerocuesError
     from aerocues.evaluation.dask_engine import DaskEngine
     from aerocues.evaluation.run import run
+    from aerocues.exports.use import Used, use
     from aerocues.methods.arrays import Features, Keypoints, Matches
     from aerocues.methods.combination import Combination
     from aerocues.methods.plugins import register
@@ -78,6 +79,8 @@ _MODULES = {
     "tune": "tuning.tune",
     "Tuned": "tuning.tune",
     "Combination": "methods.combination",
+    "use": "exports.use",
+    "Used": "exports.use",
     "register": "methods.plugins",
     "Keypoints": "methods.arrays",
     "Features": "methods.arrays",
@@ -104,6 +107,7 @@ __all__ = [
     "Relations",
     "Results",
     "Tuned",
+    "Used",
     "Validation",
     "__version__",
     "compare",
@@ -120,6 +124,7 @@ __all__ = [
     "score",
     "simulate",
     "tune",
+    "use",
     "validate",
     "write_report",
 ]

@@ -25,6 +25,7 @@ from aerocues.cli import (
     simulate,
     status,
     tune,
+    use,
     validate,
 )
 from aerocues.cli.wording import in_options
@@ -63,6 +64,7 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
+app.command("use")(use.use)
 app.command("tune", short_help="Search parameters; keep those that help on other scenes.")(
     tune.tune
 )

@@ -147,3 +147,19 @@ def select(
     if not kept:
         raise SelectionError("the selection is empty; take out fewer combinations")
     return kept
+
+
+def select_one(methods: Methods, combination: str | Combination) -> Combination:
+    """The one combination of a name.
+
+    Raises
+    ------
+    SelectionError
+        If there is none, or there are several.
+    """
+    chosen = select(methods, str(combination))
+    if len(chosen) != 1:
+        raise SelectionError(
+            f"{combination} names {len(chosen)} combinations; name one, such as {chosen[0]}"
+        )
+    return chosen[0]

@@ -19,7 +19,7 @@ from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
-from aerocues.methods.selection import select
+from aerocues.methods.selection import select_one
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
@@ -72,14 +72,9 @@ class Pipeline:
         check_choice("geometry", geometry, get_args(Geometry))
         parts, limit = as_preset(preset), keypoint_limit(max_keypoints)
         methods = limit.limited(installed_methods().with_preset(parts))
-        chosen = select(methods, str(combination))
-        if len(chosen) != 1:
-            raise SelectionError(
-                f"{combination} names {len(chosen)} combinations; name one, such as {chosen[0]}"
-            )
         protocol = MeasurementProtocol.of_preset(parts, seed=seed, limit=limit)
         clock = Clock(seed)
-        self.combination = chosen[0]
+        self.combination = select_one(methods, combination)
         self._source = FeatureSource(methods, protocol, clock)
         self._stages = PairStages(methods, protocol, geometry, clock)
 
