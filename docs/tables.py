@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from aerocues.exports.targets import TARGETS
 from aerocues.methods.compatibility import incompatibility, why_meaningless
 from aerocues.methods.descriptors import DESCRIPTORS
 from aerocues.methods.detectors import DETECTORS
@@ -258,6 +259,14 @@ def reconstructions() -> Iterator[tuple[str, ...]]:
 
 
 Table = Callable[[], Iterator[tuple[str, ...]]]
+def targets() -> Iterator[tuple[str, ...]]:
+    """One row a tool that files are written for."""
+    yield "`--as`", "what is written", "positions: where the centre of the top-left pixel is"
+    for row in TARGETS:
+        if row.kind == "files":
+            yield f"`{row.name}`", row.title, row.conventions
+
+
 TABLES: dict[str, tuple[Table, ...]] = {
     "methods.md": (detectors, biases, descriptors, norms_and_matchers, presets, compatibility),
     "measuring.md": (statuses,),
@@ -265,6 +274,7 @@ TABLES: dict[str, tuple[Table, ...]] = {
     "reconstruction.md": (reconstruction_statuses, reconstructions),
     "results.md": (names, provenance),
     "tuning.md": (tuned, grids),
+    "using.md": (targets,),
     "scoring.md": (weight_methods, score_presets, criteria),
 }
 

@@ -99,6 +99,7 @@ def test_functions_take_images_combinations_and_output_in_this_order() -> None:
     for name in ("run", "recommend", "reconstruct"):
         assert first[name] == ["dataset", "combinations", "output"]
     assert first["tune"] == ["dataset", "methods", "output"]
+    assert first["use"] == ["dataset", "combination", "output"]
     assert first["simulate"] == ["survey", "output"]
     for name in ("score", "validate", "compare", "relate_outcomes"):
         assert first[name][:2] == ["results", "preset"]
@@ -112,6 +113,7 @@ NAMED_ALIKE = (
     "reconstruct",
     "tune",
     "simulate",
+    "use",
     "score",
     "validate",
     "compare",

@@ -1,14 +1,29 @@
-"""`aerocues use`: a combination as a program."""
+"""`aerocues use`: a combination as a program, or in files of another tool."""
 
 from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.options import EQUALIZE, METHOD_PRESET, MaxWidthOption, PluginOption
+from aerocues.cli.options import (
+    EQUALIZE,
+    METHOD_PRESET,
+    FeaturesOption,
+    MaxWidthOption,
+    MemoryLimitOption,
+    PairsOption,
+    PluginOption,
+    SubsetOption,
+)
+from aerocues.defaults import STAGE_TIMEOUT
+
+if TYPE_CHECKING:
+    from aerocues.exports.use import Used
+
+NAME_PARTS = 4
 
 
 class As(StrEnum):
@@ -16,6 +31,13 @@ class As(StrEnum):
 
     PYTHON = "python"
     CPP = "cpp"
+    COLMAP = "colmap"
+    HLOC = "hloc"
+    OPENSFM = "opensfm"
+    ODM = "odm"
+    OPENMVG = "openmvg"
+    BUNDLER = "bundler"
+    KAPTURE = "kapture"
 
 
 def use(
@@ -26,11 +48,20 @@ def use(
             help="Such as ORB-BEBLID-HAM-BF; by default the best of --from.",
         ),
     ] = None,
+    dataset: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[IMAGES]", help="A folder of images, for files; by default those of --from."
+        ),
+    ] = None,
     target: Annotated[As, typer.Option("--as", help="What to use it as.")] = As.PYTHON,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="File to write; by default standard output."
+            "-o",
+            "--output",
+            metavar="PATH",
+            help="File of the program (by default standard output), or folder of the files.",
         ),
     ] = None,
     results: Annotated[
@@ -54,27 +85,68 @@ def use(
         int | None,
         typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all random choices."),
     ] = None,
+    pairs: PairsOption = None,
+    subset: SubsetOption = None,
+    refine_keypoints: Annotated[
+        bool | None,
+        typer.Option(
+            "--refine-keypoints/--no-refine-keypoints",
+            help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
+        ),
+    ] = None,
+    features: FeaturesOption = None,
+    timeout: Annotated[
+        str, typer.Option(metavar="TIME", help="CPU time limit of one stage, such as 30min.")
+    ] = f"{STAGE_TIMEOUT / 60:g}min",
+    memory_limit: MemoryLimitOption = None,
     plugin: PluginOption = None,
 ) -> None:
-    """Use a combination elsewhere: as a program in OpenCV alone.
+    """Use a combination elsewhere: as a program, or in another tool.
 
-    The program finds the same keypoints, matches and geometry as were measured, and needs
-    nothing but OpenCV.
+    A program (python, cpp) finds the same keypoints, matches and geometry as were measured, and
+    needs nothing but OpenCV. Files hold the features, matches and verified pairs of a whole flight;
+    the tool goes on from them.
     """
     import aerocues
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.live import display
 
-    used = aerocues.use(
-        combination,
-        output,
-        target=target.value,
-        results=results,
-        preset=preset,
-        max_keypoints=max_keypoints,
-        max_width=max_width,
-        equalize=equalize,
-        seed=seed,
-    )
-    if output is None:
+    if results is not None and dataset is None and combination and not _is_name(combination):
+        combination, dataset = None, combination
+    with interruptible(), display() as tally:
+        used = aerocues.use(
+            dataset,
+            combination,
+            output,
+            target=target.value,
+            results=results,
+            preset=preset,
+            max_keypoints=max_keypoints,
+            max_width=max_width,
+            equalize=equalize,
+            seed=seed,
+            pairs=pairs,
+            subset=subset,
+            refine_keypoints=refine_keypoints,
+            features=features,
+            timeout=timeout,
+            memory_limit=memory_limit,
+            progress=tally,
+        )
+    _print(used)
+
+
+def _is_name(word: str) -> bool:
+    """Whether a word names a combination rather than images."""
+    return len(word.split("-")) == NAME_PARTS and not Path(word).exists()
+
+
+def _print(used: Used) -> None:
+    if used.path is None:
         typer.echo(used.text, nl=False)
-    else:
-        typer.echo(f"{used.combination} written to {output}", err=True)
+        return
+    typer.echo(f"{used.combination} for {used.target}: {used.path}")
+    if used.figures:
+        typer.echo(f"\n{used}\n")
+    for number, command in enumerate(used.next):
+        typer.echo(f"{'' if number else 'next':9s}{command}")

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from aerocues.datasets.catalog import DatasetLike
+from aerocues.datasets.dataset import Dataset
+from aerocues.defaults import FLIGHT_KEYPOINTS, STAGE_TIMEOUT
 from aerocues.errors import ArgumentError
+from aerocues.exports.files import write_files
 from aerocues.exports.recipe import Measured, recipe_of
 from aerocues.exports.targets import Target, target_named
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
-from aerocues.modelling import best_combinations, preset_of_results
+from aerocues.modelling import (
+    best_combinations,
+    features_of_results,
+    open_as_measured,
+    preset_of_results,
+)
+from aerocues.progress import Progress
+from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.results.measured_results import Results, as_results
 from aerocues.results.whole_files import write_whole
 
@@ -29,39 +41,56 @@ class Used:
     path : path or None
         Where it was written; None if nowhere.
     text : str
-        The program.
+        The program; empty for files.
+    figures : mapping of str to int
+        Of files: images, keypoints, matches of the pairs that beat chance, and verified ones.
+    next : tuple of str
+        Commands of the tool that go on from the files.
     """
 
     target: str
     combination: str
     path: Path | None
-    text: str
+    text: str = ""
+    figures: Mapping[str, int] = field(default_factory=dict)
+    next: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return self.text
+        return self.text or "\n".join(f"{name:17s}{self.figures[name]:,}" for name in self.figures)
 
 
 def use(
+    dataset: DatasetLike | None = None,
     combination: str | Combination | None = None,
     output: str | Path | None = None,
     *,
-    target: str,
+    target: str = "python",
     results: Results | str | Path | None = None,
     preset: str | Preset | None = None,
     max_keypoints: int | None = None,
     max_width: int | None = None,
     equalize: str | None = None,
     seed: int | None = None,
+    pairs: str | None = None,
+    subset: str | None = None,
+    refine_keypoints: bool | None = None,
+    features: str | Path | None = None,
+    timeout: float | str = STAGE_TIMEOUT,
+    memory_limit: float | None = None,
+    progress: Progress | None = None,
 ) -> Used:
-    """Use a combination elsewhere: as a program in OpenCV alone.
+    """Use a combination elsewhere: as a program in OpenCV alone, or in files of another tool.
 
     Parameters
     ----------
+    dataset : Dataset, str, path or sequence of paths, optional
+        Images of a flight whose features, matches and verified pairs are written; by default those
+        of `results`. Programs need none.
     combination : str or Combination, optional
         By default the best of `results`.
     output : path, optional
-        File of the program; without it, nothing is written.
-    target : {"python", "cpp"}
+        File of the program, or folder of the files. Without it, a program is not written.
+    target : {"python", "cpp", "colmap", "hloc", "opensfm", "odm", "openmvg", "bundler", "kapture"}
         What it is to be.
     results : Results or path, optional
         Results that it was measured in; everything else is then as it was measured there.
@@ -69,7 +98,7 @@ def use(
         Parameters of the methods; by default those of `results`, or ``"default"``.
     max_keypoints : int, optional
         The strongest keypoints that are kept in an image; 0 keeps all. By default as in `results`,
-        or all.
+        or all in programs and 8000 in files, as in reconstructions.
     max_width : int, optional
         Wider images are shrunk to so many pixels; 0 for images as they are. By default as in
         `results`, or as they are.
@@ -77,6 +106,20 @@ def use(
         By default as in `results`, or none.
     seed : int, optional
         By default that of `results`, or 0.
+    pairs, subset : str, optional
+        Which pairs and images of `dataset`; see `open_dataset`. Neighbours by GPS by default, or
+        all pairs where positions are not known.
+    refine_keypoints : bool, optional
+        Whether keypoints of tracks are refined, as in `reconstruct`.
+    features : path, optional
+        Folder in which features are kept, and found if a run kept them there; that of `results`
+        by default.
+    timeout : float or str
+        CPU time of one stage: seconds, or a text such as ``"30min"``.
+    memory_limit : float, optional
+        Gigabytes of the process that matches.
+    progress : callable, optional
+        Called with each `aerocues.Event`.
 
     Returns
     -------
@@ -85,7 +128,8 @@ def use(
     Raises
     ------
     AerocuesError
-        If an argument makes no sense, there is no such combination, or OpenCV alone cannot do it.
+        If an argument makes no sense, there is no such combination, it cannot be used so, or the
+        images cannot be linked.
     """
     row = target_named(target)
     measured = None if results is None else as_results(results)
@@ -97,7 +141,37 @@ def use(
         "seed": seed,
     }
     settings = _settings(measured, preset, given)
-    return _program(row, name, settings, None if output is None else Path(output))
+    place = None if output is None else Path(output)
+    if row.kind == "program":
+        if dataset is not None:
+            raise ArgumentError("a program reads any images; leave `dataset` out")
+        return _program(row, name, settings, place)
+    if place is None:
+        raise ArgumentError(f"the files of {row.name} need a folder; give one as `output`")
+    scene = (
+        dataset
+        if isinstance(dataset, Dataset)
+        else open_as_measured(
+            dataset or _measured_images(measured),
+            measured,
+            pairs=pairs,
+            max_width=max_width,
+            equalize=equalize,
+            subset=subset,
+        )
+    )
+    limit = settings.max_keypoints or (FLIGHT_KEYPOINTS if max_keypoints is None else 0)
+    options = ReconstructionOptions(
+        preset=settings.preset,
+        protocol=ReconstructionProtocol(settings.seed, limit, "refine"),
+        refine_keypoints=refine_keypoints,
+        features=features or features_of_results(measured),
+        workers=1,
+        timeout=timeout,
+        memory_limit=memory_limit,
+    )
+    written, figures, commands = write_files(row, scene, name, place, options, progress)
+    return Used(row.name, written, place, figures=figures, next=commands)
 
 
 def _named(combination: str | Combination | None, results: Results | None) -> str:
@@ -109,6 +183,13 @@ def _named(combination: str | Combination | None, results: Results | None) -> st
         )
     dataset = results.settings.get("dataset", {}).get("name")
     return best_combinations(results, dataset, 1)[0]
+
+
+def _measured_images(results: Results | None) -> str:
+    source = {} if results is None else results.settings.get("dataset", {}).get("source") or {}
+    if "spec" not in source:
+        raise ArgumentError("there are no images; give a folder of them as `dataset`")
+    return str(source["spec"])
 
 
 def _settings(

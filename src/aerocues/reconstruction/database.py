@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.methods.arrays import Keypoints
 from aerocues.reconstruction.colmap import image_pair, open_database
 from aerocues.reconstruction.images import HALF_PIXEL
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
@@ -57,19 +57,29 @@ def new_database(file: Path, scene: Scene) -> None:
         )
 
 
-def _rows(keypoints: Any) -> NDArray[np.float32]:
-    """Position (COLMAP's pixel centre is (0.5, 0.5)), scale, orientation in radians."""
-    return np.column_stack(
-        [
-            keypoints.xy + np.float32(HALF_PIXEL),
-            keypoints.size / 2,
-            np.radians(np.maximum(keypoints.angle, 0)),
-        ]
-    ).astype(np.float32)
+def keypoint_rows(keypoints: Keypoints) -> NDArray[np.float32]:
+    """Position, scale and orientation in radians of keypoints, (N, 4).
+
+    The centre of the top-left pixel is (0, 0), unlike in COLMAP.
+    """
+    scale, orientation = keypoints.size / 2, np.radians(np.maximum(keypoints.angle, 0))
+    return np.column_stack([keypoints.xy, scale, orientation]).astype(np.float32)
+
+
+def _rows(keypoints: Keypoints) -> NDArray[np.float32]:
+    """The same for COLMAP, where that centre is (0.5, 0.5)."""
+    rows = keypoint_rows(keypoints)
+    rows[:, :2] += np.float32(HALF_PIXEL)
+    return rows
 
 
 def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]:
     """Number of inliers of each verified pair of images."""
+    return {names: len(indices) for names, indices in verified_matches(file, numbers).items()}
+
+
+def verified_matches(file: Path, numbers: Mapping[str, int]) -> dict[Names, NDArray[np.int64]]:
+    """Matches of each verified pair that agree with its geometry, (K, 2) indices of keypoints."""
     names = {number: name for name, number in numbers.items()}
     database = open_database(file)
     try:
@@ -80,5 +90,6 @@ def verified_inliers(file: Path, numbers: Mapping[str, int]) -> dict[Names, int]
     for pair_id, geometry in zip(pair_ids, geometries, strict=True):
         first, second = image_pair(pair_id)
         if len(geometry.inlier_matches):
-            found[names[first], names[second]] = len(geometry.inlier_matches)
+            matches = np.asarray(geometry.inlier_matches, np.int64)
+            found[names[first], names[second]] = matches
     return found

@@ -13,6 +13,7 @@ from aerocues.errors import AerocuesError, ImageError
 from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
+from aerocues.reconstruction.linked_scene import Links
 from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row
@@ -92,6 +93,28 @@ def prepare_images(
         child.stop()
         raise
     return prepared
+
+
+def link_images(
+    scene: Scene, combination: Combination, limits: ReconstructionLimits, watch: Watch
+) -> Row:
+    """Detect, describe, match and verify in a child process; the row of what it did.
+
+    Its ``status`` is ``ok`` where pairs were verified; the files are in the combination's folder.
+    """
+    child = _child(scene, limits)
+    try:
+        child.send(Links(combination))
+        found: object = None
+        while found is None:
+            watch([Activity(0, *child.doing())])
+            if wait([child.pipe], POLL_SECONDS):
+                found = child.receive()
+            else:
+                found = child.overrun(limits.seconds)
+    finally:
+        child.stop()
+    return _row_of(found)
 
 
 def in_groups(combinations: Iterable[Combination]) -> list[Group]:

@@ -1,7 +1,7 @@
 """The process that reconstructs: ``python -m aerocues.reconstruction.worker``.
 
-It receives a scene and then either images to prepare or one combination, and sends back the result.
-COLMAP can abort its process; then only this work is lost.
+It receives a scene and then images to prepare, a combination, or links to find, and sends back the
+result. COLMAP can abort its process; then only this work is lost.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     from aerocues.reconstruction.colmap import quiet
     from aerocues.reconstruction.combination_model import CombinationModel
     from aerocues.reconstruction.images import prepare_image
+    from aerocues.reconstruction.linked_scene import LinkMaker, Links
     from aerocues.results.reconstruction_schema import BASELINE
 
     scene = pipe.recv()
@@ -34,6 +35,8 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
             if isinstance(work, Combination):
                 maker = BaselineModel if work == BASELINE else CombinationModel
                 found: object = maker(scene, work, heartbeat.announce).make()
+            elif isinstance(work, Links):
+                found = LinkMaker(scene, work.combination, heartbeat.announce).make()
             else:
                 found = prepare_image(scene.dataset.image(work), scene.images)
         except (AerocuesError, OSError) as error:
