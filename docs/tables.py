@@ -259,6 +259,8 @@ def reconstructions() -> Iterator[tuple[str, ...]]:
 
 
 Table = Callable[[], Iterator[tuple[str, ...]]]
+
+
 def targets() -> Iterator[tuple[str, ...]]:
     """One row a tool that files are written for."""
     yield "`--as`", "what is written", "positions: where the centre of the top-left pixel is"

@@ -38,6 +38,8 @@ class As(StrEnum):
     OPENMVG = "openmvg"
     BUNDLER = "bundler"
     KAPTURE = "kapture"
+    RTABMAP = "rtabmap"
+    ODM_OPTIONS = "odm-options"
 
 
 def use(
@@ -61,7 +63,7 @@ def use(
             "-o",
             "--output",
             metavar="PATH",
-            help="File of the program (by default standard output), or folder of the files.",
+            help="File of a program or settings (by default standard output), or folder.",
         ),
     ] = None,
     results: Annotated[
@@ -105,7 +107,8 @@ def use(
 
     A program (python, cpp) finds the same keypoints, matches and geometry as were measured, and
     needs nothing but OpenCV. Files hold the features, matches and verified pairs of a whole flight;
-    the tool goes on from them.
+    the tool goes on from them. Settings (rtabmap, odm-options) are the nearest that a tool with a
+    fixed list of features has.
     """
     import aerocues
     from aerocues.cli.interruption import interruptible

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from aerocues.arguments import check_choice
 from aerocues.errors import MethodUnavailableError
 
-Kind = Literal["program", "files"]
+Kind = Literal["program", "files", "settings"]
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,10 @@ class Target:
         As users write it.
     title : str
         What it is.
-    kind : {"program", "files"}
+    kind : {"program", "files", "settings"}
         A ``program`` is written from the parameters of the combination alone; ``files`` are those
-        of another tool, with the features, matches and verified pairs of a flight.
+        of another tool, with the features, matches and verified pairs of a flight; ``settings``
+        are what comes nearest in a tool with a fixed list of features.
     writer : str
         Its function, as ``module:function`` of this package.
     conventions : str
@@ -107,6 +108,8 @@ TARGETS: tuple[Target, ...] = (
         "(0, 0), pixels, row before column",
     ),
     Target("kapture", "a kapture dataset", "files", "kapture:write_kapture", "(0.5, 0.5), pixels"),
+    Target("rtabmap", "arguments of RTAB-Map", "settings", "rtabmap:rtabmap_settings"),
+    Target("odm-options", "options of ODM", "settings", "odm_options:odm_options"),
 )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,9 @@ from aerocues.exports.files import write_files
 from aerocues.exports.recipe import Measured, recipe_of
 from aerocues.exports.targets import Target, target_named
 from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
+from aerocues.methods.selection import select_one
 from aerocues.modelling import (
     best_combinations,
     features_of_results,
@@ -41,7 +44,7 @@ class Used:
     path : path or None
         Where it was written; None if nowhere.
     text : str
-        The program; empty for files.
+        The program or the settings; empty for files.
     figures : mapping of str to int
         Of files: images, keypoints, matches of the pairs that beat chance, and verified ones.
     next : tuple of str
@@ -79,19 +82,22 @@ def use(
     memory_limit: float | None = None,
     progress: Progress | None = None,
 ) -> Used:
-    """Use a combination elsewhere: as a program in OpenCV alone, or in files of another tool.
+    """Use a combination elsewhere: as a program in OpenCV alone, or in another tool.
 
     Parameters
     ----------
     dataset : Dataset, str, path or sequence of paths, optional
         Images of a flight whose features, matches and verified pairs are written; by default those
-        of `results`. Programs need none.
+        of `results`. Programs and settings need none.
     combination : str or Combination, optional
         By default the best of `results`.
     output : path, optional
-        File of the program, or folder of the files. Without it, a program is not written.
-    target : {"python", "cpp", "colmap", "hloc", "opensfm", "odm", "openmvg", "bundler", "kapture"}
-        What it is to be.
+        File of the program or settings, which need none, or folder of the files.
+    target : str
+        What it is to be: a program (``python``, ``cpp``), files with the features and matches of a
+        flight (``colmap``, ``hloc``, ``opensfm``, ``odm``, ``openmvg``, ``bundler``, ``kapture``),
+        or the nearest settings of a tool with a fixed list of features (``rtabmap``,
+        ``odm-options``).
     results : Results or path, optional
         Results that it was measured in; everything else is then as it was measured there.
     preset : str or Preset, optional
@@ -142,10 +148,10 @@ def use(
     }
     settings = _settings(measured, preset, given)
     place = None if output is None else Path(output)
-    if row.kind == "program":
+    if row.kind != "files":
         if dataset is not None:
-            raise ArgumentError("a program reads any images; leave `dataset` out")
-        return _program(row, name, settings, place)
+            raise ArgumentError(f"{row.title} need no images; leave `dataset` out")
+        return _text(row, name, settings, place, measured)
     if place is None:
         raise ArgumentError(f"the files of {row.name} need a folder; give one as `output`")
     scene = (
@@ -216,9 +222,24 @@ def _settings(
     )
 
 
-def _program(row: Target, combination: str, settings: Measured, output: Path | None) -> Used:
-    recipe = recipe_of(combination, settings)
-    text = str(row.load()(recipe))
+def _text(
+    row: Target, combination: str, settings: Measured, output: Path | None, results: Results | None
+) -> Used:
+    """A program, or the nearest settings of a tool."""
+    if row.kind == "program":
+        recipe = recipe_of(combination, settings)
+        one, text = recipe.combination, str(row.load()(recipe))
+    else:
+        one = select_one(installed_methods(), combination)
+        text = str(row.load()(one, settings, _ranked(results)))
     if output is not None:
         write_whole({output: text.encode()})
-    return Used(row.name, str(recipe.combination), output, text)
+    return Used(row.name, str(one), output, text)
+
+
+def _ranked(results: Results | None) -> list[str] | None:
+    """All measured combinations, the best first."""
+    if results is None:
+        return None
+    dataset = results.settings.get("dataset", {}).get("name")
+    return best_combinations(results, dataset, sys.maxsize)
