@@ -12,6 +12,10 @@ class AerocuesError(Exception):
     """Base of every error that a user can act on; the command line prints it in one line."""
 
 
+class DamageWarning(UserWarning):
+    """A file is damaged or missing; what does not depend on it goes on without it."""
+
+
 class ArgumentError(AerocuesError):
     """An argument has a value that makes no sense, whatever is measured."""
 

@@ -28,8 +28,10 @@ def read_json(path: Path, what: str, kind: type[AerocuesError], next_step: str) 
         raise kind(f"cannot read {what} {path}: {why_unreadable(error)}; {next_step}") from error
 
 
-def why_unreadable(error: OSError | ValueError) -> str:
+def why_unreadable(error: OSError | ValueError | RecursionError) -> str:
     """Why a file of a user cannot be read as JSON, in words that follow a colon."""
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
@@ -38,4 +40,6 @@ def why_unreadable(error: OSError | ValueError) -> str:
         return error.strerror or str(error)
     if isinstance(error, json.JSONDecodeError):
         return f"it is not written as JSON (line {error.lineno}, column {error.colno})"
-    return "it is no text"
+    if isinstance(error, UnicodeDecodeError):
+        return "it is not text in UTF-8"
+    return str(error)

@@ -47,6 +47,28 @@ def test_what_is_left_and_left_out_is_told(call: Call, finished: Path, tmp_path:
     assert "ORB-LUCID-HAM-BF on 3 pairs: gray" in answer.out
 
 
+def test_every_file_is_verified(call: Call, finished: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "damaged"
+    shutil.copytree(finished, folder)
+    answer = call("status", folder, "--verify")
+    assert (answer.code, answer.err) == (0, "")
+    assert re.fullmatch(r"\d+ files checked, none damaged\n", answer.out)
+    part = min((folder / "parts").glob("*.parquet"))
+    lost = len(pl.read_parquet(part))
+    part.write_bytes(part.read_bytes()[:-1])
+    answer = call("status", folder, "--verify")
+    assert answer.code == 1
+    assert answer.out.startswith(f"{part} is damaged (")
+    [told] = json.loads(call("status", folder, "--verify", "--json").out)["damaged"]
+    assert told["file"] == str(part)
+    answer = call("status", folder)
+    assert answer.code == 0
+    assert answer.out.startswith(f"{12 - lost} of 12 rows done")
+    [line] = answer.err.splitlines()
+    assert line.startswith(f"warning: {part} is damaged")
+    assert "'aerocues run' measures them again" in line
+
+
 def test_what_was_left_out_for_one_reason_takes_one_line(
     call: Call, finished: Path, tmp_path: Path
 ) -> None:

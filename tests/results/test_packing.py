@@ -14,6 +14,7 @@ from polars.testing import assert_frame_equal
 from aerocues.errors import StoreError
 from aerocues.results.measured_results import Results
 from aerocues.results.store import Store
+from aerocues.results.whole_files import parquet_content
 from tests.results.test_store import planned, row
 
 
@@ -134,6 +135,35 @@ def test_damage_is_told(results: Results, tmp_path: Path, temporary: Path) -> No
             Results(file).table()
         gc.collect()
         assert list(temporary.iterdir()) == []
+
+
+def test_an_archive_that_becomes_gigabytes_is_not_unpacked(
+    results: Results, tmp_path: Path, temporary: Path
+) -> None:
+    file = results.pack(tmp_path / "packed.zip")
+    with (
+        zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("parts/more.parquet", "w") as member,
+    ):
+        for _ in range(600):
+            member.write(bytes(2**20))
+    with pytest.raises(StoreError, match=r"packed\.zip is not read.*would become 0\.6 GB"):
+        Results(file)
+    assert list(temporary.iterdir()) == []
+
+
+def test_a_table_that_becomes_gigabytes_is_not_read(
+    results: Results, tmp_path: Path, temporary: Path
+) -> None:
+    rows = pl.DataFrame({"row_key": pl.repeat("x", 40_000_000, eager=True)})
+    content = parquet_content(rows.with_columns(pl.lit(0.5).alias("precision")))
+    assert len(content) < 400_000
+    file = results.pack(tmp_path / "packed.zip")
+    with zipfile.ZipFile(file, "a") as archive:
+        archive.writestr("parts/more.parquet", content)
+    with pytest.raises(StoreError, match=r"in parts/more\.parquet .*would become 1\.\d GB"):
+        Results(file)
+    assert list(temporary.iterdir()) == []
 
 
 @pytest.mark.parametrize(

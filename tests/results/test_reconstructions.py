@@ -7,7 +7,7 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from aerocues.errors import StoreError
+from aerocues.errors import DamageWarning
 from aerocues.results.measured_results import Results
 from aerocues.results.reconstruction_schema import RECONSTRUCTIONS
 from aerocues.results.store import Store
@@ -73,8 +73,8 @@ def test_they_can_be_queried(store: Store) -> None:
 
 def test_a_damaged_file_is_told(store: Store) -> None:
     (store.folder / "reconstructions.parquet").write_bytes(b"nothing")
-    with pytest.raises(StoreError, match=str(store.folder)):
-        store.reconstructions()
+    with pytest.warns(DamageWarning, match=str(store.folder)):
+        assert store.reconstructions().is_empty()
 
 
 def test_a_folder_that_has_nothing_else_is_still_its_own(store: Store) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, cast
 
 import typer
@@ -29,7 +31,7 @@ from aerocues.cli import (
     validate,
 )
 from aerocues.cli.wording import in_options
-from aerocues.errors import AerocuesError
+from aerocues.errors import AerocuesError, DamageWarning
 from aerocues.phrases import printable
 
 BAD_INPUT = 2
@@ -117,13 +119,33 @@ def exit_code(arguments: Sequence[str]) -> int:
 def _run(arguments: Sequence[str]) -> int:
     command = typer.main.get_command(app)
     try:
-        with command.make_context("aerocues", list(arguments) or ["--help"]) as context:
+        words = list(arguments) or ["--help"]
+        with _warnings_in_lines(arguments), command.make_context("aerocues", words) as context:
             command.invoke(context)
     except typer.Exit as finished:
         return finished.exit_code
     finally:
         sys.stdout.flush()
     return 0
+
+
+@contextlib.contextmanager
+def _warnings_in_lines(arguments: Sequence[str]) -> Iterator[None]:
+    """Print each warning of damage once, in one line, as errors are; others as Python does."""
+    with warnings.catch_warnings():
+        as_python_does, said = warnings.showwarning, set()
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **_: Any) -> None:
+            if not issubclass(category, DamageWarning):
+                as_python_does(message, category, *place)
+            elif str(message) not in said:
+                said.add(str(message))
+                told = in_options(str(message), _parameters(arguments))
+                sys.stderr.write(f"warning: {' '.join(told.split())}\n")
+
+        warnings.showwarning = show
+        warnings.simplefilter("always", DamageWarning)
+        yield
 
 
 def _parameters(arguments: Sequence[str]) -> list[Any]:

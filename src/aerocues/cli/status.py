@@ -6,7 +6,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,7 +15,7 @@ from aerocues.cli.options import JsonOption, ResultsArgument
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from aerocues.results.measured_results import RunStatus
+    from aerocues.results.measured_results import Results, RunStatus
 
 LONGEST_MESSAGE = 160
 LONGEST_LIST = 40
@@ -27,15 +27,49 @@ OPENCV_PREFIX = re.compile(r"OpenCV\([^)]*\) \S+: error: ")
 def status(
     folder: ResultsArgument,
     as_json: JsonOption = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Check every file of the folder for damage.")
+    ] = False,
 ) -> None:
-    """Show the progress of a run, with reasons of failures."""
+    """Show the progress of a run, with reasons of failures.
+
+    With --verify the exit code is 1 if a file is damaged.
+    """
     import aerocues
 
-    found = aerocues.Results(folder).status()
+    results = aerocues.Results(folder)
+    if verify:
+        _verify(results, as_json=as_json)
+        return
+    found = results.status()
     if as_json:
         _print_json(found)
     else:
         _print_status(found, folder)
+
+
+def _verify(results: Results, *, as_json: bool) -> None:
+    """Say which files are damaged; exit code 1 if any is."""
+    from aerocues.cli.output import print_json
+    from aerocues.phrases import count
+
+    checked = results.verify()
+    damaged = [each for each in checked if each.problem]
+    unchecked = sum(not each.has_checksum for each in checked)
+    if as_json:
+        told = [{"file": str(each.file), "problem": each.problem} for each in damaged]
+        print_json({"files": len(checked), "without_checksum": unchecked, "damaged": told})
+    else:
+        for each in damaged:
+            typer.echo(str(each))
+        typer.echo(f"{count(len(checked), 'file')} checked, {len(damaged) or 'none'} damaged")
+        if unchecked:
+            typer.echo(
+                f"{count(unchecked, 'file')} of an older version without a checksum: read through, "
+                "but a changed value in them cannot be seen"
+            )
+    if damaged:
+        raise typer.Exit(1)
 
 
 def _print_json(found: RunStatus) -> None:

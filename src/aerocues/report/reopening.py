@@ -41,7 +41,10 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
     if settings.get("imported") or measured.get("name") != found.entry.dataset:
         raise DatasetError("the measurements were imported and their images are unknown")
     preset = recorded_preset(settings)
-    protocol = _protocol(settings["protocol"])
+    try:
+        protocol = _protocol(settings["protocol"])
+    except (KeyError, TypeError) as error:
+        raise DatasetError(f"run.json does not say how they were measured ({error})") from error
     return Context(
         dataset=_with_pairs(_dataset(found, measured, moved), found.pairs()),
         methods=protocol.limit.limited(installed_methods().with_preset(preset)),
@@ -53,10 +56,11 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
 
 
 def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[str]) -> Dataset:
-    width = measured["settings"].get("max_width", "full")
+    settings = measured.get("settings", {})
+    width = settings.get("max_width", "full")
     options: dict[str, Any] = {
-        "max_width": None if width == "full" else int(width),
-        "equalize": measured["settings"].get("equalize", "none"),
+        "max_width": int(width) if str(width).isdecimal() else None,
+        "equalize": settings.get("equalize", "none"),
     }
     if (band := measured["settings"].get("band")) is not None:
         options["band"] = int(band)
@@ -67,9 +71,9 @@ def _dataset(found: ReportEntry, measured: Mapping[str, Any], moved: Sequence[st
         if not _missing(dataset, found):
             return dataset
     source = measured.get("source")
-    if not source:
+    if not source or "spec" not in source:
         raise DatasetError(f"the results do not say where the images are; {HINT}")
-    dataset = open_dataset(source["spec"], **options)
+    dataset = open_dataset(str(source["spec"]), **options)
     if missing := _missing(dataset, found):
         raise DatasetError(f"the image {missing} is missing; {HINT}")
     return dataset

@@ -13,7 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import StoreError
+from aerocues.results.expanded_size import why_too_large
 
+# What numpy and zipfile raise for damaged files; NotImplementedError and RuntimeError are for
+# entries that seem to be compressed in another way, or encrypted.
+UNREADABLE = (
+    OSError,
+    ValueError,
+    KeyError,
+    EOFError,
+    MemoryError,
+    NotImplementedError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 Float32Array = NDArray[np.float32]
 
 
@@ -96,10 +110,14 @@ class Cloud:
 def read_cloud(content: bytes, where: str | Path) -> Cloud:
     """The cloud from the content of a file; StoreError if it is damaged."""
     try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            expanded = sum(member.file_size for member in archive.infolist())
+        if too_large := why_too_large(len(content), expanded):
+            raise ValueError(too_large)
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             found = {field.name: arrays[field.name] for field in fields(Cloud)}
             return Cloud(**{**found, "unit": str(found["unit"])})
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+    except UNREADABLE as error:
         raise StoreError(
             f"{where} is damaged ({error}); remove it and reconstruct again"
         ) from error

@@ -6,10 +6,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.errors import StoreError
+from aerocues.results.integrity import reason_of
 from aerocues.results.whole_files import write_whole
 
 if TYPE_CHECKING:
     import polars as pl
+
+
+def own_files(folder: Path, ending: str) -> list[Path]:
+    """The files with an ending in a folder, sorted by name; hidden ones are others' (``._x``)."""
+    return sorted(
+        file
+        for file in folder.glob(f"*{ending}")
+        if not file.name.startswith(".") and file.is_file()
+    )
 
 
 class FolderFiles:
@@ -34,8 +44,8 @@ class FolderFiles:
 
         try:
             return rows.collect()
-        except (pl.exceptions.PolarsError, OSError) as error:
+        except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
             raise StoreError(
-                f"cannot read the results in {self.folder}: {' '.join(str(error).split())[:200]}; "
-                "remove the damaged part and run the same command again"
+                f"cannot read the results in {self.folder}: {reason_of(error)}; run the same "
+                "command again"
             ) from error

@@ -19,7 +19,7 @@ from aerocues.results.measured_results import Results
 from aerocues.results.packing import folder_content
 from aerocues.results.plan_table import IDENTITY_NAMES
 from aerocues.results.reconstructions import read_reconstructions
-from aerocues.results.store import OWN, PARTS, RUN, Store
+from aerocues.results.store import RUN, Store, others_in
 from aerocues.results.table_files import TableFile, read_table_file
 from aerocues.results.whole_files import write_whole
 
@@ -179,11 +179,11 @@ def _check_place(one: _Import) -> None:
     folder, another = one.folder, "give another folder as `output`"
     if not folder.is_dir():
         return  # a file is refused when the folder is created
-    others = [path.name for path in folder.iterdir() if path.name not in OWN]
+    others = others_in(folder)
     if others:
         raise StoreError(f"{folder} holds other files ({others[0]}, ...); {another}")
     if not (folder / RUN).is_file():
-        if any((folder / PARTS).glob("*.parquet")):
+        if Store(folder).parts():
             raise StoreError(f"{folder} holds measured rows; {another}")
         return
     earlier = Store.open(folder).run().get(IMPORTED)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.results.clouds import Cloud
+    from aerocues.results.integrity import Checked
 
 
 def timing_counts(table: pl.DataFrame) -> tuple[dict[str, int], int]:
@@ -158,6 +159,16 @@ class Results:
         from aerocues.results.queries import answer
 
         return answer(query, {"results": self.table(), "reconstructions": self.reconstructions()})
+
+    def verify(self) -> list[Checked]:
+        """Every file of the folder, with what is wrong with it.
+
+        Raises
+        ------
+        StoreError
+            If a file may not be read.
+        """
+        return self._store.check()
 
     def status(self) -> RunStatus:
         """Numbers of finished, remaining and failed rows, failures by reason."""

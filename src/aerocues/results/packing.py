@@ -13,9 +13,11 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
+from aerocues.results.expanded_size import why_not_decoded, why_too_large
 from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED
+from aerocues.results.run_record import record_content
 from aerocues.results.store import PARTS, PLAN, RUN, Store
-from aerocues.results.whole_files import json_content, parquet_content
+from aerocues.results.whole_files import parquet_content
 
 if TYPE_CHECKING:
     import polars as pl
@@ -42,7 +44,7 @@ def folder_content(
     content = {SINGLE_PART: parquet_content(rows), PLAN: parquet_content(plan)}
     if reconstructions is not None:
         content[RECONSTRUCTED] = parquet_content(reconstructions)
-    return {**content, RUN: json_content(facts)}
+    return {**content, RUN: record_content(facts)}
 
 
 def packed(store: Store) -> bytes:
@@ -94,11 +96,17 @@ def unpack(file: Path) -> Path:
 def _extract(file: Path, folder: Path) -> None:
     try:
         with zipfile.ZipFile(file) as archive:
-            for name, member in _members(file, archive).items():
+            members = _members(file, archive)
+            # No member gives more than the size that it states: zipfile stops there.
+            expanded = sum(member.file_size for member in members.values())
+            _refuse(file, "", why_too_large(file.stat().st_size, expanded))
+            for name, member in members.items():
                 target = folder / name
                 target.parent.mkdir(exist_ok=True)
                 with archive.open(member) as content, target.open("wb") as copy:
                     shutil.copyfileobj(content, copy)
+                if target.suffix == ".parquet":
+                    _refuse(file, f"in {name} ", why_not_decoded(target.read_bytes()))
     except BROKEN as error:
         raise StoreError(
             f"{file} is neither a results folder nor packed results ({error}); give a results "
@@ -110,6 +118,11 @@ def _extract(file: Path, folder: Path) -> None:
             "unzip it "
             "and name the folder"
         ) from error
+
+
+def _refuse(file: Path, where: str, why: str | None) -> None:
+    if why is not None:
+        raise StoreError(f"{file} is not read: {where}{why}; ask for the results once more")
 
 
 def _members(file: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:

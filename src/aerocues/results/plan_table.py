@@ -24,6 +24,15 @@ def with_all_columns(plan: pl.DataFrame) -> pl.DataFrame:
     return plan.with_columns(pl.lit(value=False).alias(TIMED_ALONE))
 
 
+def plan_of(rows: pl.DataFrame) -> pl.DataFrame:
+    """A plan that holds the measured rows, each once; how their images were read is unknown."""
+    import polars as pl
+
+    keyed = rows.unique("row_key", keep="last", maintain_order=True)
+    unknown = pl.lit(None, pl.String).alias("dataset_key")
+    return with_all_columns(keyed.select(*IDENTITY_NAMES, "row_key", "settings_key", unknown))
+
+
 def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """Add the plan of a run to the plan of the folder.
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.errors import StoreError
 from aerocues.results.clouds import Cloud, read_cloud
-from aerocues.results.folder_files import FolderFiles
+from aerocues.results.folder_files import FolderFiles, own_files
+from aerocues.results.integrity import Checked, check_tables, warn_of
 from aerocues.results.reconstruction_schema import RECONSTRUCTION_IDENTITY, RECONSTRUCTIONS
 from aerocues.results.reconstructions import reconstruction_table
 from aerocues.results.schema import polars_schema
@@ -59,13 +61,19 @@ class ReconstructionStore(FolderFiles):
                 file.unlink()
 
     def reconstructions(self) -> pl.DataFrame:
-        """The table of 3D reconstructions, sorted by dataset and combination; often empty."""
+        """The table of 3D reconstructions, sorted by dataset and combination; often empty.
+
+        A damaged table is told and left out.
+        """
         import polars as pl
 
         schema = pl.Schema(polars_schema(RECONSTRUCTIONS))
-        if not (self.folder / RECONSTRUCTED).is_file():
-            return pl.DataFrame(schema=schema)
         file = self.folder / RECONSTRUCTED
+        files = [file] if file.is_file() else []
+        damaged = [each for each in check_tables(files, schema, decode=True) if each.problem]
+        warn_of(damaged, "its models are left out; make them again with `aerocues.reconstruct`")
+        if damaged or not files:
+            return pl.DataFrame(schema=schema)
         return self._collect(
             pl.scan_parquet(file, schema=schema, missing_columns="insert", extra_columns="ignore")
         )
@@ -82,18 +90,34 @@ class ReconstructionStore(FolderFiles):
         Raises
         ------
         StoreError
-            If its file is damaged or cannot be read.
+            If its file is damaged or may not be read.
         """
         file = self.folder / CLOUDS / f"{row_key}.npz"
         if not file.is_file():
             return None
-        try:
-            return read_cloud(file.read_bytes(), file)
-        except OSError as error:
-            raise StoreError(
-                f"cannot read {file}: {error.strerror}; check the access rights"
-            ) from error
+        found = _read(file)
+        if isinstance(found, Cloud):
+            return found
+        raise StoreError(f"{found}; remove it and make it again with `aerocues.reconstruct`")
 
     def cloud_files(self) -> list[Path]:
         """The files of all clouds."""
-        return sorted((self.folder / CLOUDS).glob("*.npz"))
+        return own_files(self.folder / CLOUDS, ".npz")
+
+    def check_clouds(self) -> Iterator[Checked]:
+        """The files of all clouds, checked; each array in them has a checksum."""
+        for file in self.cloud_files():
+            found = _read(file)
+            yield Checked(file) if isinstance(found, Cloud) else found
+
+
+def _read(file: Path) -> Cloud | Checked:
+    """The cloud in a file, or what is wrong with it."""
+    try:
+        return read_cloud(file.read_bytes(), file)
+    except PermissionError as error:
+        raise StoreError(f"cannot read {file}: {error.strerror}; grant access to it") from error
+    except OSError as error:
+        return Checked(file, f"it cannot be read: {error.strerror or error}")
+    except StoreError as error:
+        return Checked(file, str(error.__cause__))

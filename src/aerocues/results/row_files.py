@@ -6,13 +6,16 @@ of thousands of small files takes a minute, so those of a long run are merged.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+import os
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.errors import StoreError
-from aerocues.results.folder_files import FolderFiles
+from aerocues.results.folder_files import FolderFiles, own_files
 from aerocues.results.hashing import content_hash
+from aerocues.results.integrity import Checked, check_tables, warn_of
 from aerocues.results.schema import polars_schema
 from aerocues.results.whole_files import parquet_content
 
@@ -26,9 +29,13 @@ MANY_FILES = 1000
 class RowFiles(FolderFiles):
     """The files with rows in one folder."""
 
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._sound: set[tuple[Path, int, int]] = set()
+
     def files(self) -> list[Path]:
         """All files, sorted by name."""
-        return sorted(self.folder.glob("*.parquet"))
+        return own_files(self.folder, ".parquet")
 
     def write(self, name: str, rows: pl.DataFrame) -> None:
         """Store rows in a file, all or none.
@@ -41,7 +48,7 @@ class RowFiles(FolderFiles):
         self._write(self.folder / f"{name}.parquet", parquet_content(rows))
 
     def read(self, columns: Sequence[str] | None = None) -> pl.DataFrame:
-        """All rows as they were written, including duplicates.
+        """All rows as they were written, including duplicates; damaged files are told and left out.
 
         Parameters
         ----------
@@ -51,15 +58,33 @@ class RowFiles(FolderFiles):
         Raises
         ------
         StoreError
-            If a file is damaged.
+            If a file may not be read.
         """
         files = self.files()
+        damaged = self.damaged(files)
         try:
-            return self._read(files, columns)
+            rows = self._read(_without(files, damaged), columns)
         except StoreError:
-            if self.files() == files:
-                raise
-            return self.read(columns)  # another process merged some files in the meantime
+            if self.files() != files:
+                return self.read(columns)  # another process merged some files in the meantime
+            damaged = self.damaged(files, decode=True)
+            rows = self._read(_without(files, damaged), columns)
+        warn_of(damaged, "its rows are left out; `aerocues.run` measures them again")
+        return rows
+
+    def damaged(self, files: Sequence[Path], *, decode: bool = False) -> list[Checked]:
+        """Which files are damaged; `decode` also looks into those without a checksum.
+
+        Raises
+        ------
+        StoreError
+            If a file may not be read.
+        """
+        states = {file: (file, state.st_size, state.st_mtime_ns) for file, state in _states(files)}
+        unknown = [file for file in states if decode or states[file] not in self._sound]
+        checked = check_tables(unknown, polars_schema(), decode=decode)
+        self._sound.update(states[each.file] for each in checked if each.problem is None)
+        return [each for each in checked if each.problem is not None]
 
     def put_together(self) -> None:
         """Merge very many small files into a few large ones; at any time all rows are on the disk.
@@ -77,7 +102,7 @@ class RowFiles(FolderFiles):
             for file in files:
                 file.unlink(missing_ok=True)
 
-    def _read(self, files: list[Path], columns: Sequence[str] | None) -> pl.DataFrame:
+    def _read(self, files: Sequence[Path], columns: Sequence[str] | None) -> pl.DataFrame:
         import polars as pl
 
         schema = pl.Schema(polars_schema())
@@ -85,6 +110,18 @@ class RowFiles(FolderFiles):
             return pl.DataFrame(schema=schema).select(columns or list(schema))
         # Older results lack columns that were added later.
         rows = pl.scan_parquet(
-            files, schema=schema, missing_columns="insert", extra_columns="ignore"
+            list(files), schema=schema, missing_columns="insert", extra_columns="ignore"
         )
         return self._collect(rows.select(columns or list(schema)))
+
+
+def _states(files: Sequence[Path]) -> Iterator[tuple[Path, os.stat_result]]:
+    """The files that are still there."""
+    for file in files:
+        with contextlib.suppress(FileNotFoundError):
+            yield file, file.stat()
+
+
+def _without(files: Sequence[Path], damaged: Sequence[Checked]) -> list[Path]:
+    left_out = {checked.file for checked in damaged}
+    return [file for file in files if file not in left_out]

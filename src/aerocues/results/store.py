@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,14 +12,16 @@ from aerocues.errors import StoreError
 from aerocues.results.best_rows import best_rows
 from aerocues.results.folder_lock import LOCK, folder_lock
 from aerocues.results.hashing import content_hash
+from aerocues.results.integrity import Checked, check_tables, warn_of
 from aerocues.results.metrics import Row
-from aerocues.results.plan_table import merge_plans, with_all_columns
+from aerocues.results.plan_table import merge_plans, plan_of, with_all_columns
 from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED, ReconstructionStore
 from aerocues.results.row_files import RowFiles
+from aerocues.results.run_record import read_record, record_content
 from aerocues.results.schema import polars_schema
 from aerocues.results.statuses import RETRIED
 from aerocues.results.timing import TIMINGS, Timing
-from aerocues.results.whole_files import json_content, parquet_content
+from aerocues.results.whole_files import parquet_content
 
 if TYPE_CHECKING:
     import polars as pl
@@ -32,8 +33,16 @@ RACE = "race.json"
 PLAN = "plan.parquet"
 REFERENCES = "references"
 """Where workers share references of pairs; it may be deleted, and is not packed."""
-OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, REFERENCES, LOCK)
+DAMAGED = "damaged"
+"""Where damaged files are put, for whoever wants to look at them."""
+OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, REFERENCES, DAMAGED, LOCK)
 LONGEST_LIST = 12
+
+
+def others_in(folder: Path) -> list[str]:
+    """Names of what does not belong to a results folder; what systems hide there is no matter."""
+    names = (path.name for path in folder.iterdir())
+    return sorted(name for name in names if name not in OWN and not name.startswith("."))
 
 
 class Store(ReconstructionStore):
@@ -56,10 +65,10 @@ class Store(ReconstructionStore):
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give the name of a folder as `output`")
         if folder.is_dir() and not (folder / RUN).exists() and any(folder.iterdir()):
-            left_over = [path for path in folder.iterdir() if path.name not in OWN]
-            if left_over:
+            others = others_in(folder)
+            if others:
                 raise StoreError(
-                    f"{folder} holds other files ({left_over[0].name}, ...); give a new or "
+                    f"{folder} holds other files ({others[0]}, ...); give a new or "
                     "empty folder as `output`"
                 )
         store = cls(folder)
@@ -80,15 +89,16 @@ class Store(ReconstructionStore):
 
     @contextlib.contextmanager
     def writing(self) -> Iterator[None]:
-        """Lock the folder against other runs, and remove partial files of an interrupted run.
+        """Lock the folder against other runs, remove partial files, and put damaged ones aside.
 
         Raises
         ------
         StoreError
-            If another process is writing to the folder.
+            If another process is writing to the folder, or a file may not be read.
         """
         with folder_lock(self.folder):
             self._remove_leftovers()
+            self._set_aside_damaged()
             self._row_files.put_together()
             yield
             self._row_files.put_together()
@@ -114,6 +124,47 @@ class Store(ReconstructionStore):
         for path in [path for folder in beside for path in folder.glob("*.tmp")]:
             path.unlink(missing_ok=True)
 
+    def _set_aside_damaged(self) -> None:
+        damaged = self._row_files.damaged(self.parts(), decode=True)
+        damaged += [each for each in self._check_tables() if each.problem]
+        if not damaged:
+            return
+        aside = self.folder / DAMAGED
+        try:
+            aside.mkdir(exist_ok=True)
+            for checked in damaged:
+                checked.file.replace(aside / checked.file.name)
+        except OSError as error:
+            raise StoreError(
+                f"{damaged[0]}, and it cannot be moved to {aside}: {error.strerror}; grant access "
+                "and run the same command again"
+            ) from error
+        warn_of(damaged, f"it was moved to {aside}; what it held is measured again where asked for")
+
+    def _check_tables(self) -> list[Checked]:
+        """The tables of which there is one each, checked."""
+        tables = [self.folder / name for name in (PLAN, RECONSTRUCTED)]
+        return check_tables([file for file in tables if file.is_file()], decode=True)
+
+    def check(self) -> list[Checked]:
+        """Every file of the folder, checked.
+
+        Raises
+        ------
+        StoreError
+            If a file may not be read.
+        """
+        tables = check_tables(self.parts(), polars_schema(), decode=True)
+        return [self._check_run(), *self._check_tables(), *tables, *self.check_clouds()]
+
+    def _check_run(self) -> Checked:
+        file = self.folder / RUN
+        try:
+            record = read_record(file)
+        except StoreError as error:
+            return Checked(file, str(error))
+        return Checked(file, record.problem, has_checksum=record.has_checksum)
+
     def write_rows(self, name: str, rows: Sequence[Row]) -> None:
         """Store the rows of a finished part of a unit, all or none.
 
@@ -137,7 +188,7 @@ class Store(ReconstructionStore):
 
     def write_run(self, facts: Mapping[str, Any]) -> None:
         """Store configuration, versions and machine of the latest run."""
-        self._write(self.folder / RUN, json_content(facts))
+        self._write(self.folder / RUN, record_content(facts))
 
     def write_plan(self, rows: pl.DataFrame) -> None:
         """Add the planned rows of a run; see `planned_rows.merge_plans`."""
@@ -157,10 +208,17 @@ class Store(ReconstructionStore):
         return with_all_columns(self._collect(pl.scan_parquet(self.folder / PLAN)))
 
     def planned(self) -> pl.DataFrame:
-        """The planned rows under the settings of the latest run."""
+        """The planned rows under the settings of the latest run.
+
+        Where the plan is damaged, the measured rows under these settings stand for it.
+        """
         import polars as pl
 
-        return self.plan().filter(pl.col("settings_key") == self.run().get("settings_key"))
+        plan = self.folder / PLAN
+        damaged = [each for each in check_tables([plan], decode=True) if each.problem]
+        warn_of(damaged, "every measured row counts as planned; `aerocues.run` restores the plan")
+        rows = plan_of(self.rows()) if damaged else self.plan()
+        return rows.filter(pl.col("settings_key") == self.run().get("settings_key"))
 
     def planned_keys(self) -> frozenset[str]:
         """Keys of the planned rows; empty if there is no plan."""
@@ -174,19 +232,17 @@ class Store(ReconstructionStore):
         return keys & frozenset(self._row_files.read(("row_key",))["row_key"]) if keys else keys
 
     def run(self) -> dict[str, Any]:
-        """The latest record of `write_run`."""
-        try:
-            content = json.loads((self.folder / RUN).read_text(encoding="utf-8"))
-        except (OSError, json.JSONDecodeError) as error:
-            raise StoreError(
-                f"cannot read {self.folder / RUN}: {error}; measure the same again with "
-                "`aerocues.run` to restore it"
-            ) from error
-        if not isinstance(content, dict):
-            raise StoreError(
-                f"{self.folder / RUN} is damaged; measure the same again with `aerocues.run`"
-            )
-        return content
+        """The latest record of `write_run`.
+
+        Raises
+        ------
+        StoreError
+            If it cannot be read, or is not of the form that it must have.
+        """
+        record = read_record(self.folder / RUN)
+        if record.problem:
+            warn_of([Checked(self.folder / RUN, record.problem)], "its values are used as they are")
+        return record.facts
 
     def parts(self) -> list[Path]:
         """The files with finished rows."""

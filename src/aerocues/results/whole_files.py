@@ -10,6 +10,8 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aerocues.results.checksums import with_checksum
+
 if TYPE_CHECKING:
     import polars as pl
 
@@ -44,10 +46,13 @@ def _remove(path: Path) -> None:
 
 
 def parquet_content(table: pl.DataFrame) -> bytes:
-    """A table as the content of a file, because polars has its own errors for a full disk."""
+    """A table as the content of a file with a checksum.
+
+    It is not written by polars, which has its own errors for a full disk.
+    """
     content = io.BytesIO()
     table.write_parquet(content, compression="zstd")
-    return content.getvalue()
+    return with_checksum(content.getvalue())
 
 
 def json_content(facts: Mapping[str, Any]) -> bytes:
