@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 from aerocues.errors import AerocuesError
+from aerocues.text_files import decoded
 
 
 def read_json(path: Path, what: str, kind: type[AerocuesError], next_step: str) -> Any:
-    """The content of a file.
+    """The content of a file, without doubled keys and numbers that are not finite.
 
     Parameters
     ----------
@@ -23,9 +25,32 @@ def read_json(path: Path, what: str, kind: type[AerocuesError], next_step: str) 
         What to do where it cannot be read.
     """
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        return json.loads(
+            decoded(path.read_bytes()),
+            object_pairs_hook=_object,
+            parse_constant=_finite,
+            parse_float=_finite,
+        )
+    except (OSError, ValueError, RecursionError) as error:
         raise kind(f"cannot read {what} {path}: {why_unreadable(error)}; {next_step}") from error
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; of two values under one key nobody knows which one is meant."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise ValueError(f"it has the key {json.dumps(key)} twice")
+        found[key] = value
+    return found
+
+
+def _finite(text: str) -> float:
+    """A number; JSON knows neither infinity nor NaN, but Python reads both."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is not a finite number")
+    return value
 
 
 def why_unreadable(error: OSError | ValueError | RecursionError) -> str:

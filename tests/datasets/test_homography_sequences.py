@@ -162,3 +162,39 @@ def test_read_homography(tmp_path: Path) -> None:
     file = tmp_path / "H"
     file.write_text(" 1.5e0 0\t0\n0 2 0 0 0 1")
     assert np.array_equal(read_homography(file), np.diag([1.5, 2.0, 1.0]))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "1.5 0 0\n0 2 0\n0 0 1".encode("utf-8-sig"),
+        "1.5 0 0\n0 2 0\n0 0 1".encode("utf-16"),
+        b"1.5, 0, 0\n0, 2, 0\n0, 0, 1\n",
+        b"1.5,0,0,0,2,0,0,0,1",
+        b"1,5 0 0\n0 2,0 0\n0 0 1",
+        b"1,5;0;0;0;2;0;0;0;1",
+        b"[[1.5, 0, 0], [0, 2, 0], [0, 0, 1]]",
+        b"[1.5 0 0; 0 2 0; 0 0 1]",
+        b"# H 1 to 2\n1.5 0 0 // first\n% second\n0 2 0\n0 0 1 # end",
+        b"1.5 0 0\r0 2 0\r0 0 1",
+    ],
+)
+def test_a_homography_is_read_as_programs_write_it(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "H").write_bytes(content)
+    assert np.array_equal(read_homography(tmp_path / "H"), np.diag([1.5, 2.0, 1.0]))
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"1 0 0 0 1 0 0 0", "8 numbers in place of nine"),
+        (b"1 0 0 0 1 0 0 0 1 0", "10 numbers"),
+        (b"1 0 0 0 x 0 0 0 1", "'x'"),
+        (b"1 0 0 0 inf 0 0 0 1", "not finite"),
+        (b"\xff\xd8\xff\xe0", "not UTF-8"),
+    ],
+)
+def test_what_is_wrong_with_a_homography_is_told(tmp_path: Path, content: bytes, told: str) -> None:
+    (tmp_path / "H").write_bytes(content)
+    with pytest.raises(DatasetError, match=told):
+        read_homography(tmp_path / "H")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import os
 import random
@@ -58,11 +59,11 @@ def without_checksum(file: Path) -> bytes:
 def test_tables_carry_a_checksum_and_are_parquet_all_the_same() -> None:
     table = pl.DataFrame({"a": [1, 2, 3], "b": ["x", None, "z"]})
     content = parquet_content(table)
-    assert agrees_with_checksum(content) is True
+    assert agrees_with_checksum(io.BytesIO(content)) is True
     assert_frame_equal(pl.read_parquet(content), table)
     for other in (content[:-1], content + b"x", content[1:], flipped(content, 100)):
-        assert agrees_with_checksum(other) is False
-    assert agrees_with_checksum(b"PAR1 of others PAR1") is None
+        assert agrees_with_checksum(io.BytesIO(other)) is False
+    assert agrees_with_checksum(io.BytesIO(b"PAR1 of others PAR1")) is None
 
 
 DAMAGE: dict[str, Callable[[bytes], bytes]] = {
@@ -143,14 +144,14 @@ def test_hidden_and_foreign_files_are_ignored(folder: Path) -> None:
 
 
 def test_a_file_without_access_is_no_damage(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    read = Path.read_bytes
+    opened = Path.open
 
-    def refused(path: Path) -> bytes:
+    def refused(path: Path, *how: Any, **more: Any) -> Any:
         if path.name == "b.parquet":
             raise PermissionError(13, "Permission denied", str(path))
-        return read(path)
+        return opened(path, *how, **more)
 
-    monkeypatch.setattr(Path, "read_bytes", refused)
+    monkeypatch.setattr(Path, "open", refused)
     for reading in (Store.open(folder).table, Store.create(folder).writing().__enter__):
         with pytest.raises(StoreError, match=r"b\.parquet: Permission denied; grant access"):
             reading()

@@ -22,6 +22,22 @@ def test_a_file_behind_a_link_is_replaced_and_the_link_stays(tmp_path: Path) -> 
     assert file.read_text() == "name,value\na,1.5\nb,\n"
 
 
+def test_cells_that_look_like_formulas_are_defused_in_csv(tmp_path: Path) -> None:
+    names = ["=cmd|'/c calc'!A1", "+1", "-1", "@SUM(A1)", "\t=1", "plain", "a=b", None]
+    table = pl.DataFrame({"name": names, "value": [-1.5] * len(names)})
+    export_table(table, tmp_path / "rows.csv", "csv")
+    read = pl.read_csv(tmp_path / "rows.csv", infer_schema=False)
+    assert read["name"].to_list() == [
+        *(f"'{name}" for name in names[:5] if name),
+        "plain",
+        "a=b",
+        None,
+    ]
+    assert read["value"].unique().to_list() == ["-1.5"]
+    export_table(table, tmp_path / "rows.parquet", "parquet")
+    assert pl.read_parquet(tmp_path / "rows.parquet")["name"].to_list() == names
+
+
 def test_json_has_null_for_what_is_missing(tmp_path: Path) -> None:
     file = tmp_path / "rows.json"
     export_table(TABLE, file, "json")

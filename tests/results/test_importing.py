@@ -16,6 +16,7 @@ from polars.testing import assert_frame_equal
 
 import aerocues
 from aerocues.errors import StoreError
+from aerocues.results.export import export_table
 from aerocues.results.importing import import_results
 from aerocues.results.measured_results import Results
 from aerocues.results.schema import COLUMNS, polars_schema
@@ -134,7 +135,7 @@ def test_a_dataset_and_a_platform_can_be_chosen(tmp_path: Path) -> None:
 
 def test_what_was_written_as_csv_comes_back(table: Path, tmp_path: Path) -> None:
     [results] = import_results(table, tmp_path / "first")
-    results.table().write_csv(tmp_path / "again.csv")
+    export_table(results.table(), tmp_path / "again.csv", "csv")
     [again] = import_results(tmp_path / "again.csv", tmp_path / "second")
     assert_frame_equal(again.table(), results.table())
 
@@ -161,7 +162,7 @@ def test_every_other_column_comes_back(
     [row] = measured("d", "p", 1)[:1]
     row = row | values
     schema = {name: polars_schema().get(name, pl.String) for name in row}
-    pl.DataFrame([row], schema=schema).write_csv(folder / "t.csv")
+    export_table(pl.DataFrame([row], schema=schema), folder / "t.csv", "csv")
     [results] = import_results(folder / "t.csv", folder / "results")
     [got] = results.table().to_dicts()
     assert {name: got[name] for name in values} == values
@@ -249,7 +250,7 @@ def test_columns_that_do_not_fit_are_named(tmp_path: Path, frame: pl.DataFrame, 
         ("t.csv", b"", "CSV"),
         ("t.csv", b"dataset,pair\n1,2,3\n", "CSV"),
         ("t.csv", b"dataset\n\xff\n", "CSV"),
-        ("t.csv", b"dataset;pair\na;1\n", "comma"),
+        ("t.csv", b"dataset;pair\na;1\n", "lacks the columns detector"),
         ("t.csv", b"dataset,pair\n", "row"),
         ("t.parquet", b"PAR1" + b"x" * 50 + b"PAR1", "Parquet"),
         ("t.parquet", b"dataset,pair\n", "CSV nor Parquet"),

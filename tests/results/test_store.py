@@ -272,6 +272,26 @@ def test_sql_answers_and_explains_itself(store: Store) -> None:
             results.sql(query)
 
 
+@pytest.mark.parametrize(
+    "source",
+    [
+        "read_csv('{file}')",
+        "READ_CSV ('{file}')",
+        "read_csv/* */('{file}')",
+        "\"read_csv\"('{file}')",
+        "(SELECT \"--\", * FROM read_csv('{file}'))",
+        "results WHERE detector IN (SELECT secret FROM read_csv('{file}'))",
+    ],
+)
+def test_sql_sees_no_files(store: Store, tmp_path: Path, source: str) -> None:
+    store.write_rows("a", [row(1)])
+    (tmp_path / "other.csv").write_text("secret\nORB\n")
+    with pytest.raises(StoreError, match="no files"):
+        Results(store.folder).sql(f"SELECT * FROM {source.format(file=tmp_path / 'other.csv')}")
+    told = Results(store.folder).sql("SELECT 'read_csv(x)' AS text FROM results -- read_csv(x)")
+    assert told.to_dicts() == [{"text": "read_csv(x)"}]
+
+
 def write_many(store: Store, count: int) -> list[dict[str, Any]]:
     """A file for each of so many rows."""
     rows = [row(n, matches=n, measured_at=float(n)) for n in range(count)]

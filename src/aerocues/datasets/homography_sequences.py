@@ -17,6 +17,10 @@ from aerocues.datasets.folder import image_paths, settings_of, subfolders
 from aerocues.datasets.options import Options
 from aerocues.errors import DatasetError, ImageError
 from aerocues.phrases import printable
+from aerocues.text_files import decoded
+
+AGAIN = "correct it or download the sequence again"
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -132,15 +136,34 @@ def read_homography(path: Path) -> NDArray[np.float64]:
         If the file is missing, or is not an invertible matrix of nine numbers.
     """
     try:
-        numbers = [float(word) for word in path.read_text(encoding="ascii").split()]
+        numbers = matrix_numbers(decoded(path.read_bytes()))
     except OSError as error:
         raise DatasetError(f"cannot read the homography {path}: {error.strerror}") from error
-    except ValueError:
-        numbers = []
-    matrix = np.array(numbers, dtype=np.float64)
-    if matrix.size != 9 or not np.isfinite(matrix).all():
-        raise DatasetError(f"{path} does not have nine numbers; download the sequence again")
-    matrix = matrix.reshape(3, 3)
+    except ValueError as error:
+        raise DatasetError(f"{path} is not a homography: {error}; {AGAIN}") from error
+    if len(numbers) != 9:
+        raise DatasetError(f"{path} has {len(numbers)} numbers in place of nine; {AGAIN}")
+    matrix = np.array(numbers, dtype=np.float64).reshape(3, 3)
+    if not np.isfinite(matrix).all():
+        raise DatasetError(f"{path} has a number that is not finite; {AGAIN}")
     if abs(np.linalg.det(matrix)) < 1e-12 or matrix[2, 2] == 0:
-        raise DatasetError(f"{path} is not an invertible homography; download the sequence again")
+        raise DatasetError(f"{path} is not an invertible homography; {AGAIN}")
     return matrix
+
+
+def matrix_numbers(text: str) -> list[float]:
+    """The numbers of a matrix as programs write it.
+
+    Between numbers may stand blanks, commas, semicolons and brackets; ``#``, ``%`` and ``//`` begin
+    comments. Commas inside of numbers are decimal commas where blanks divide the text into nine.
+
+    Raises
+    ------
+    ValueError
+        If there is anything else.
+    """
+    bare = re.sub(r"[\[\](){};]", " ", re.sub(r"(#|%|//).*", " ", text))
+    words = bare.split()
+    if len(words) == 9 and any(DECIMAL_COMMA.fullmatch(word) for word in words):
+        return [float(word.replace(",", ".")) for word in words]
+    return [float(word) for word in bare.replace(",", " ").split()]

@@ -14,6 +14,8 @@ from aerocues.json_files import read_json
 from aerocues.methods.presets import Preset, preset_named, preset_names
 
 _GROUPS = ("detectors", "descriptors", "on_detectors")
+LARGEST_THRESHOLD = 1e6
+"""Pixels: more than any image has."""
 _KNOWN = ("name", "title", "chance_test", *_GROUPS, "thresholds", "unbiased", "made")
 
 
@@ -42,7 +44,7 @@ def preset_of(content: Mapping[str, Any], where: str) -> Preset:
     unknown = [name for name in content if name not in _KNOWN]
     if unknown:
         raise SelectionError(f"{where}: {unknown[0]} is unknown; a preset has {_known()}")
-    name = str(content["name"])
+    name = _text(content, "name", "unnamed", where)
     if name.lower() in preset_names() and content != asdict(preset_named(name)):
         raise SelectionError(f"{where}: {name} is the name of another preset; choose a new one")
     return _assembled(content, where)
@@ -70,18 +72,36 @@ def _assembled(content: Mapping[str, Any], where: str) -> Preset:
                 'as {"ORB": {"nlevels": 8}}'
             )
     thresholds = content.get("thresholds", {})
-    if not isinstance(thresholds, dict) or not all(
-        isinstance(value, int | float) and value > 0 for value in thresholds.values()
-    ):
+    if not isinstance(thresholds, dict) or not all(map(_is_pixels, thresholds.values())):
         raise SelectionError(f'{where}: thresholds must hold pixels, such as {{"ORB-BEBLID": 1.5}}')
     return Preset(
-        name=str(content["name"]),
-        title=str(content.get("title", f"from {where}")),
-        chance_test=bool(content.get("chance_test", True)),
+        name=_text(content, "name", "unnamed", where),
+        title=_text(content, "title", f"from {where}", where),
+        chance_test=_truth(content, "chance_test", where),
         **groups,
         thresholds={both: float(value) for both, value in thresholds.items()},
-        unbiased=bool(content.get("unbiased", True)),
+        unbiased=_truth(content, "unbiased", where),
     )
+
+
+def _is_pixels(value: Any) -> bool:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number and 0 < value < LARGEST_THRESHOLD
+
+
+def _text(content: Mapping[str, Any], name: str, default: str, where: str) -> str:
+    value = content.get(name, default)
+    if not isinstance(value, str):
+        raise SelectionError(f"{where}: {name} must be a text in double quotes, not {value!r}")
+    return value
+
+
+def _truth(content: Mapping[str, Any], name: str, where: str) -> bool:
+    """Whether something is switched on; it is where nothing is said."""
+    value = content.get(name, True)
+    if not isinstance(value, bool):
+        raise SelectionError(f"{where}: {name} must be true or false, not {json.dumps(value)}")
+    return value
 
 
 def recorded_preset(settings: Mapping[str, Any]) -> Preset:

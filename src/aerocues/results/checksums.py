@@ -7,29 +7,60 @@ Parquet like any other, and it is one file, which is replaced and copied as a wh
 from __future__ import annotations
 
 import zlib
+from typing import BinaryIO
 
 MARK = b"aerocues-crc32:"
 DIGITS = 8
 END = 8
 """Bytes after the footer: its length, and the mark of Parquet."""
+BLOCK = 1 << 18
 
 
 def with_checksum(parquet: bytes) -> bytes:
     """The content of a Parquet file with the checksum of all of it."""
     place = len(parquet) - END - int.from_bytes(parquet[-END : -END // 2], "little")
     pages, footer = memoryview(parquet)[:place], memoryview(parquet)[place:]
-    return b"".join((pages, MARK, _checksum(pages, footer), footer))
+    checksum = zlib.crc32(footer, zlib.crc32(pages))
+    return b"".join((pages, MARK, _written(checksum), footer))
 
 
-def agrees_with_checksum(content: bytes) -> bool | None:
+def agrees_with_checksum(file: BinaryIO) -> bool | None:
     """Whether a file is as it was written; None where it has no checksum, like older ones."""
-    place = content.rfind(MARK)
-    if place < 0:
+    place = _place(file)
+    if place is None:
         return None
-    behind = place + len(MARK) + DIGITS
-    checksum = _checksum(memoryview(content)[:place], memoryview(content)[behind:])
-    return content[place + len(MARK) : behind] == checksum
+    # Block by block: a file as a whole would cost more for its memory than for its checksum.
+    file.seek(0)
+    checksum = _of_next(file, place, 0)
+    stated = file.read(len(MARK) + DIGITS)[len(MARK) :]
+    return stated == _written(_of_next(file, None, checksum))
 
 
-def _checksum(pages: memoryview, footer: memoryview) -> bytes:
-    return f"{zlib.crc32(footer, zlib.crc32(pages)):0{DIGITS}x}".encode()
+def _place(file: BinaryIO) -> int | None:
+    """Where the mark is; in a file with a damaged end it is looked for."""
+    size = file.seek(0, 2)
+    file.seek(max(size - END, 0))
+    place = size - END - int.from_bytes(file.read(END // 2), "little") - len(MARK) - DIGITS
+    if place > 0:
+        file.seek(place)
+        if file.read(len(MARK)) == MARK:
+            return place
+    file.seek(0)
+    place = file.read().rfind(MARK)
+    return place if place >= 0 else None
+
+
+def _of_next(file: BinaryIO, length: int | None, checksum: int) -> int:
+    """The checksum that goes on over the next bytes; all there are, without a length."""
+    left = length
+    while left != 0:
+        block = file.read(BLOCK if left is None else min(BLOCK, left))
+        if not block:
+            break
+        checksum = zlib.crc32(block, checksum)
+        left = None if left is None else left - len(block)
+    return checksum
+
+
+def _written(checksum: int) -> bytes:
+    return f"{checksum:0{DIGITS}x}".encode()

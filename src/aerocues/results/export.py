@@ -15,14 +15,27 @@ if TYPE_CHECKING:
     import polars as pl
 
 WRITERS: dict[str, Callable[[pl.DataFrame, BinaryIO], object]] = {
-    "csv": lambda table, file: table.write_csv(file),
+    "csv": lambda table, file: defused(table).write_csv(file),
     "parquet": lambda table, file: table.write_parquet(file),
     "json": lambda table, file: file.write(table.write_json().encode()),
     "markdown": lambda table, file: file.write(as_markdown(table).encode()),
     "latex": lambda table, file: file.write(as_latex(table).encode()),
 }
+# Apostrophes that are there already get another one, so that each text comes back as it was.
+FORMULA = r"^('*[=+\-@\t\r])"
+DEFUSED = r"^'('*[=+\-@\t\r])"
 # These formats can also hold lists and other nested values.
 FORMS_OF_ANYTHING = ("parquet", "json")
+
+
+def defused(table: pl.DataFrame) -> pl.DataFrame:
+    """The table with an apostrophe before texts that a spreadsheet would take for a formula.
+
+    Names of images and messages may come from anybody. `import_results` takes it away again.
+    """
+    import polars as pl
+
+    return table.with_columns(pl.col(pl.String).str.replace(FORMULA, "'$1"))
 
 
 def table_content(table: pl.DataFrame, form: str) -> memoryview:

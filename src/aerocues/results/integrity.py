@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from aerocues.errors import DamageWarning, StoreError
 from aerocues.results.checksums import agrees_with_checksum
@@ -77,7 +77,9 @@ def check_table(
 ) -> Checked:
     """Check one Parquet file; see `check_tables`."""
     try:
-        content = file.read_bytes()
+        with file.open("rb", buffering=0) as stream:
+            agrees = agrees_with_checksum(stream)
+            problem = None if agrees else _why_unsound(stream, agrees, schema, decode=decode)
     except FileNotFoundError:
         return Checked(file)
     except PermissionError as error:
@@ -87,16 +89,23 @@ def check_table(
         ) from error
     except OSError as error:
         return Checked(file, f"it cannot be read: {error.strerror or error}")
-    if not content:
-        return Checked(file, "it is empty", has_checksum=False)
-    agrees = agrees_with_checksum(content)
-    if agrees is None:
-        problem = _why_undecodable(content, schema) if decode else None
-        return Checked(file, problem, has_checksum=False)
-    return Checked(file, None if agrees else "its content does not agree with its checksum")
+    return Checked(file, problem, has_checksum=agrees is not None)
 
 
-def _why_undecodable(content: bytes, schema: Mapping[str, Any] | None) -> str | None:
+def _why_unsound(
+    stream: BinaryIO, agrees: bool | None, schema: Mapping[str, Any] | None, *, decode: bool
+) -> str | None:
+    """What is wrong with a file that does not agree with its checksum, or has none."""
+    if agrees is False:
+        return "its content does not agree with its checksum"
+    if not stream.seek(0, 2):
+        return "it is empty"
+    stream.seek(0)
+    return why_undecodable(stream.read(), schema) if decode else None
+
+
+def why_undecodable(content: bytes, schema: Mapping[str, Any] | None = None) -> str | None:
+    """Why Parquet cannot be decoded, or None; see `check_tables` for the schema."""
     import polars as pl
 
     if problem := why_not_decoded(content):

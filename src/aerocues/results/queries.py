@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 READING = ("SELECT", "WITH")
 # Spaces, brackets and comments may precede the first word.
 FIRST_WORD = re.compile(r"(?:\s|\(|--[^\n]*(?:\n|$)|/\*.*?\*/)*(\w*)", re.DOTALL)
+# Names in quotes, and what is no word of the query: texts and comments.
+QUOTED = re.compile(r"""("(?:[^"]|"")*")|'(?:[^']|'')*'|--[^\n]*|/\*.*?\*/""", re.DOTALL)
+# Functions of polars that stand for a table, as a query writes them and as a plan shows them.
+READS_FILES = re.compile(r'\b(?:read|scan)_\w+"?\s*\(', re.IGNORECASE)
+SCAN = re.compile(r"^\s*\w+ SCAN ", re.MULTILINE)
 NO_COLUMN = re.compile(r"""(?:unable to find column|no column named) ["'](.+?)["']""")
 LONGEST_REASON = 160
 
@@ -44,9 +49,18 @@ def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
             "results'; "
             "other statements are not supported"
         )
+    no_files = StoreError(
+        f"a query sees the tables {' and '.join(tables)} only, no files; leave out functions such "
+        "as read_csv"
+    )
+    if READS_FILES.search(QUOTED.sub(lambda found: found[1] or " ", query)):
+        raise no_files
     try:
-        return pl.SQLContext(tables).execute(query, eager=True)
-    except pl.exceptions.PolarsError as error:
+        answer = pl.SQLContext(tables).execute(query)
+        if SCAN.search(answer.explain(optimized=False)):
+            raise no_files
+        return answer.collect()
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
         names = chain.from_iterable(table.columns for table in tables.values())
         raise StoreError(_reason(str(error), names, tables)) from error
 

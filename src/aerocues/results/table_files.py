@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 from aerocues.errors import StoreError
 from aerocues.methods.combination import METHOD_NAME
 from aerocues.results.combination_columns import METHODS
+from aerocues.results.csv_files import CsvError, read_csv
+from aerocues.results.export import DEFUSED
+from aerocues.results.integrity import why_undecodable
 from aerocues.results.schema import Column, polars_schema
 
 if TYPE_CHECKING:
@@ -21,6 +24,10 @@ PARQUET_MARK = b"PAR1"
 # Texts that programs write for a missing number.
 NO_NUMBER = ("", "NA", "N/A", "NaN", "nan", "null", "None", "-")
 MAY_BE_NEGATIVE = ("seed",)
+DECIMAL_COMMA = r"^\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*$"
+DECIMAL_POINT = r"^\s*[-+]?\d*\.\d+([eE][-+]?\d+)?\s*$"
+NO_THOUSANDS = r"^\s*[-+]?(0\d*|\d{4,}),\d+|^\s*[-+]?\d+,(\d{1,2}|\d{4,})([eE]|\s*$)"
+"""A comma that no program writes between thousands."""
 
 
 @dataclass(frozen=True)
@@ -62,32 +69,32 @@ def read_table_file(file: Path, other_names: Mapping[str, str]) -> TableFile:
     if not is_parquet and file.suffix.lower() != ".csv":
         damaged = " (its content is not Parquet)" if file.suffix.lower() == ".parquet" else ""
         raise StoreError(f"{file} is neither CSV nor Parquet{damaged}; give one of these")
-    try:
-        if is_parquet:
-            frame = pl.read_parquet(io.BytesIO(content))
-        else:
-            frame = pl.read_csv(io.BytesIO(content), infer_schema=False)
-    except (pl.exceptions.PolarsError, OSError) as error:
-        form = "Parquet" if is_parquet else "CSV"
-        raise StoreError(f"{file} cannot be read as {form}: {_reason(error)}") from error
+    frame = _parquet(content, file) if is_parquet else _csv(content, file)
     frame = frame.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines
     if frame.is_empty():
         raise StoreError(f"{file} has no rows; give a table with at least one row")
     table = TableFile(file.name, hashlib.sha256(content).hexdigest(), frame)
-    names = [other_names.get(name.strip(), name.strip()) for name in frame.columns]
+    names = [name.strip().lower() for name in frame.columns]
+    names = [other_names.get(name, name) for name in names]
     for given, name in zip(frame.columns, names, strict=True):
         if names.count(name) > 1:
             raise table.wrong(f"has the column {name} twice (as {given}); keep one of them")
     return replace(table, frame=frame.rename(dict(zip(frame.columns, names, strict=True))))
 
 
-def _reason(error: Exception) -> str:
-    """The error and what to do, without the parts of the message that concern polars."""
-    text = " ".join(str(error).split())
-    if "utf-8" in text.lower():
-        return "it is not UTF-8; save it as UTF-8"
-    what = text.split("Consider", maxsplit=1)[0].strip(" .:;")[:120]
-    return f"{what}; check that all its lines have the same columns, and save it again"
+def _csv(content: bytes, file: Path) -> pl.DataFrame:
+    try:
+        return read_csv(content, str(file))
+    except CsvError as error:
+        raise StoreError(f"{file} cannot be read as CSV: {error}") from error
+
+
+def _parquet(content: bytes, file: Path) -> pl.DataFrame:
+    import polars as pl
+
+    if problem := why_undecodable(content):
+        raise StoreError(f"{file} cannot be read as Parquet: {problem}; save it again")
+    return pl.read_parquet(io.BytesIO(content))
 
 
 def in_columns(
@@ -104,6 +111,9 @@ def in_columns(
 
     _check_names(table, columns, required)
     types = polars_schema(columns)
+    table = _with_decimal_points(
+        table, [column.name for column in columns if column.type != "string"]
+    )
     return pl.DataFrame(
         [
             _converted(table, column)
@@ -126,10 +136,35 @@ def _check_names(table: TableFile, columns: Sequence[Column], required: Collecti
         faults.append(f"has unknown columns: {', '.join(unknown)}")
     if missing:
         faults.append(f"lacks the columns {', '.join(missing)}")
-    if len(found) == 1 and {";", "\t"} & set(found[0]):
-        raise table.wrong("has only one column; separate the columns with commas")
     if faults:
         raise table.wrong(f"{' and '.join(faults)}; rename, remove or add them")
+
+
+def _with_decimal_points(table: TableFile, numbers: Collection[str]) -> TableFile:
+    """The table with points where it has decimal commas in columns of numbers.
+
+    Raises
+    ------
+    StoreError
+        If a comma could also stand between thousands.
+    """
+    import polars as pl
+
+    names = [name for name in numbers if name in table.frame.columns]
+    texts = [name for name in names if table.frame.schema[name] == pl.String]
+    commas = table.frame.select(pl.col(texts).str.contains(DECIMAL_COMMA))
+    found = [name for name in texts if commas[name].any()]
+    if not found:
+        return table
+    row = first_row(commas[found[0]]) or 0
+    where = f"has {table.frame[found[0]].item(row - 1)!r} as {found[0]} in row {row}"
+    if any(table.frame[name].str.contains(DECIMAL_POINT).any() for name in texts):
+        raise table.wrong(f"{where}, and numbers with points; write decimal points everywhere")
+    sure = any(table.frame[name].str.contains(NO_THOUSANDS).any() for name in found)
+    if not sure:
+        raise table.wrong(f"{where}, which may stand for thousands; write decimal points")
+    points = pl.col(found).str.replace(",", ".", literal=True)
+    return replace(table, frame=table.frame.with_columns(points))
 
 
 def _converted(table: TableFile, column: Column) -> pl.Series:
@@ -141,7 +176,7 @@ def _converted(table: TableFile, column: Column) -> pl.Series:
             f"has {values.dtype} values in the column {column.name}; give plain values"
         )
     if column.type == "string":
-        text = values.cast(pl.String).str.strip_chars()
+        text = values.cast(pl.String).str.strip_chars().str.replace(DEFUSED, "$1")
         return text.set(text == "", None)
     numbers = _numbers(table, values)
     if column.name not in MAY_BE_NEGATIVE:
