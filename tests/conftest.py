@@ -19,6 +19,12 @@ settings.load_profile("check" if os.environ.get("CI") else "everywhere")
 REPOSITORY = Path(__file__).resolve().parent.parent
 
 
+@pytest.fixture(scope="session", autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Keep what is remembered of plug-ins out of the home of whoever runs the tests."""
+    os.environ["AEROCUES_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+
+
 @pytest.fixture(scope="session")
 def repository() -> Path:
     """The root of the checkout."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from aerocues.methods import plugins
 from aerocues.results.measured_results import Results
 from tests.cli.conftest import Call
+from tests.methods.distribution import write_distribution
 
 ROOT_SIFT = """
 import cv2
@@ -68,3 +70,23 @@ def test_what_is_not_a_method_is_told_in_one_line(
     answer = call("methods", "--plugin", plugin_text)
     assert (answer.code, answer.err.count("\n")) == (2, 1)
     assert plugin_text in answer.err
+
+
+def test_plug_ins_of_packages_can_be_left_out(
+    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    offered = {"detectors": {"LOUD": "loud:Anything", "GONE": "gone:Anything"}}
+    code = {"loud.py": "print('loud')\n", "gone.py": "import os; os._exit(3)\n"}
+    write_distribution(tmp_path, "rogue", offered, code)
+    monkeypatch.syspath_prepend(tmp_path)
+    answer = call("methods", "--json")
+    rows = {row["name"]: row["unavailable"] for row in json.loads(answer.out)["detectors"]}
+    assert "'loud'" in rows["LOUD"]
+    assert "exit code 3" in rows["GONE"]
+    assert (answer.code, answer.err) == (0, "")
+    answer = call("methods", "--json", "--no-plugins")
+    assert not {"LOUD", "GONE"} & {row["name"] for row in json.loads(answer.out)["detectors"]}
+    assert "AEROCUES_PLUGINS" not in os.environ
+    monkeypatch.setenv("AEROCUES_PLUGINS", "gone")
+    named = {row["name"] for row in json.loads(call("methods", "--json").out)["detectors"]}
+    assert named & {"LOUD", "GONE"} == {"GONE"}

@@ -1,15 +1,19 @@
 from __future__ import annotations
 
 import importlib
+import os
+import re
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 
 from aerocues.errors import SelectionError
+from aerocues.methods import plugin_trial
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_unavailable
@@ -29,6 +33,7 @@ from aerocues.methods.selection import runnable, select
 from tests.methods.arena import CODE, ENTRY_POINTS
 from tests.methods.distribution import EntryPoints, write_distribution
 from tests.methods.pictures import shifted_pair
+from tests.waiting import wait_until
 
 
 @pytest.fixture
@@ -275,6 +280,109 @@ def test_a_plug_in_that_cannot_be_used_is_listed_with_the_reason(
     assert methods.problems == ()
     assert runnable(methods) == runnable(opencv_methods())
     assert count_combinations(methods).unavailable > 0
+
+
+GOOD = "class Anything:\n    parameters = {'size': 3}\n"
+MISBEHAVING = {
+    "crashes": ("import os; os.abort()", "SIGABRT"),
+    "kills itself": ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "SIGKILL"),
+    "exits": ("import os; os._exit(7)", "exit code 7"),
+    "exits well": ("import os; os._exit(0)", "exit code 0"),
+    "hangs": ("import time; time.sleep(1000)", "did not end within 2 seconds"),
+    "hangs deaf": (
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(1000)",
+        "did not end within 2 seconds",
+    ),
+    "prints": ("print('hello from me')", "it prints to standard output .*hello from me"),
+    "prints below Python": ("import os; os.write(1, b'hi')", "it prints to standard output"),
+    "forks": ("import os; os.fork()", "fork"),
+    "closes": ("import os; os.close(1)", "closes standard output"),
+    "closes in Python": ("import sys; sys.stdout.close()", "closes standard output"),
+    "interrupts": ("raise KeyboardInterrupt", "ended the process"),
+    "is no Python": ("class", "SyntaxError"),
+}
+
+
+@pytest.mark.parametrize("how", MISBEHAVING)
+def test_a_plug_in_that_misbehaves_when_it_is_imported_is_listed_as_unavailable(
+    install: Install, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    monkeypatch.setattr(plugin_trial, "SECONDS", 2.0 if "hangs" in how else 60.0)
+    source, told = MISBEHAVING[how]
+    code = {"rogue.py": f"{source}\n{GOOD}", "kind.py": GOOD}
+    offered = {"detectors": {"ROGUE": "rogue:Anything", "KIND": "kind:Anything"}}
+    methods = install("rogue", offered, code)
+    assert re.search(told, methods.detectors["ROGUE"].unavailable or "")
+    assert methods.detectors["KIND"].unavailable is None
+    assert methods.detectors["KIND"].parameters == {"size": 3}
+    assert "rogue" not in sys.modules
+    assert set(runnable(opencv_methods())) <= set(runnable(methods))
+
+
+def test_threads_and_processes_of_an_import_end_with_it(install: Install, tmp_path: Path) -> None:
+    source = """
+import subprocess, sys, threading, time
+threading.Thread(target=time.sleep, args=[1000]).start()
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
+open("PLACE", "w").write(str(child.pid))
+""".replace("PLACE", str(tmp_path / "pid"))
+    methods = install("busy", {"detectors": {"BUSY": "busy:Anything"}}, {"busy.py": source + GOOD})
+    assert methods.detectors["BUSY"].unavailable is None
+    number = int((tmp_path / "pid").read_text())
+    wait_until(lambda: not psutil.pid_exists(number) or is_zombie(number))
+
+
+def is_zombie(number: int) -> bool:
+    try:
+        return psutil.Process(number).status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+
+
+def test_what_was_said_is_remembered_until_files_change(
+    install: Install, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = f"open({str(tmp_path / 'count')!r}, 'a').write('x')\n"
+    offered = {"detectors": {"COUNTED": "counted:Anything", "BROKEN": "broken:Anything"}}
+    code = {"counted.py": source + GOOD, "broken.py": source + "raise OSError"}
+    first = install("counted", offered, code)
+    assert (tmp_path / "count").read_text() == "xx"
+    assert installed_methods() == first
+    assert (tmp_path / "count").read_text() == "xx"
+    (tmp_path / "broken.py").write_text(source + GOOD)
+    assert installed_methods().detectors["BROKEN"].unavailable is None
+    assert (tmp_path / "count").read_text() == "xxx"
+    for file in (Path(os.environ["AEROCUES_CACHE"]) / "plug-ins").iterdir():
+        file.write_text("[" * 10**5)
+    assert installed_methods().detectors["COUNTED"] == first.detectors["COUNTED"]
+    monkeypatch.setenv("AEROCUES_CACHE", "/dev/null/nowhere")
+    assert installed_methods().detectors["COUNTED"] == first.detectors["COUNTED"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "left"),
+    [
+        ("none", set()),
+        ("", set()),
+        ("CORNERS", {"CORNERS"}),
+        ("corners, mutual", {"CORNERS", "MUTUAL"}),
+        ("feature-arena", {"CORNERS", "PATCHES", "CORNER_BITS", "NEEDY", "MISTYPED", "MUTUAL"}),
+    ],
+)
+def test_plug_ins_are_chosen_by_the_environment(
+    arena: Methods, monkeypatch: pytest.MonkeyPatch, asked: str, left: set[str]
+) -> None:
+    monkeypatch.setenv("AEROCUES_PLUGINS", asked)
+    methods, opencv = installed_methods(), opencv_methods()
+    named = {*methods.detectors, *methods.descriptors, *methods.matchers}
+    assert named - {*opencv.detectors, *opencv.descriptors, *opencv.matchers} == left
+    assert methods.problems == ()
+
+
+def test_a_chosen_plug_in_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AEROCUES_PLUGINS", "MISSING,none")
+    [problem] = installed_methods().problems
+    assert "'missing'" in problem
 
 
 class Returns:

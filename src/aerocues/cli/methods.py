@@ -11,6 +11,7 @@ from aerocues.cli.options import (
     DetectorsOption,
     EverythingOption,
     JsonOption,
+    NoPluginsOption,
     PluginOption,
 )
 
@@ -35,6 +36,7 @@ def methods(
         str, typer.Option(metavar="NAME", help="Show the parameters of this preset or preset file.")
     ] = "default",
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """List the installed methods, with parameters and sources."""
     if context.invoked_subcommand is not None:
@@ -59,6 +61,7 @@ def why(
         typer.Argument(metavar="COMBINATION", help="Combination, such as SIFT-ORB-HAM-BF."),
     ],
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Tell whether a combination can run, and if not, why."""
     from aerocues.methods.explanation import explain
@@ -79,6 +82,7 @@ def list_combinations(
     descriptors: DescriptorsOption = None,
     everything: EverythingOption = False,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Print the selected combinations, one per line."""
     from aerocues.methods.plugins import installed_methods

@@ -24,6 +24,37 @@ def _register_all(references: list[str] | None) -> list[str] | None:
     return references
 
 
+def _without_plugins(context: typer.Context, asked: bool) -> bool:
+    """Leave out the plug-ins of packages, in this process and its workers, until the command ends.
+
+    It comes before `--plugin`, which looks at the others' names.
+    """
+    if asked:
+        import os
+
+        from aerocues.methods.plugins import CHOICE, NONE
+
+        before = os.environ.get(CHOICE)
+
+        def restore() -> None:
+            os.environ.pop(CHOICE)
+            if before is not None:
+                os.environ[CHOICE] = before
+
+        context.call_on_close(restore)
+        os.environ[CHOICE] = NONE
+    return asked
+
+
+NoPluginsOption = Annotated[
+    bool,
+    typer.Option(
+        "--no-plugins",
+        help="Leave out plug-ins of installed packages.",
+        callback=_without_plugins,
+        is_eager=True,
+    ),
+]
 PluginOption = Annotated[
     list[str] | None,
     typer.Option(

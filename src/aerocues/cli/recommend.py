@@ -19,6 +19,7 @@ from aerocues.cli.options import (
     MaxKeypointsOption,
     MaxWidthOption,
     MethodPresetOption,
+    NoPluginsOption,
     PairsOption,
     PluginOption,
     SeedOption,
@@ -103,6 +104,7 @@ def recommend(
     workers: WorkersOption = None,
     seed: SeedOption = 0,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Recommend a combination for images, in minutes.
 

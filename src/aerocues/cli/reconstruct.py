@@ -19,6 +19,7 @@ from aerocues.cli.options import (
     MaxKeypointsOption,
     MaxWidthOption,
     MemoryLimitOption,
+    NoPluginsOption,
     PairsOption,
     PluginOption,
     RetryFailedOption,
@@ -140,6 +141,7 @@ def reconstruct(
     memory_limit: MemoryLimitOption = None,
     retry_failed: RetryFailedOption = False,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Make a COLMAP model of a scene with each chosen combination.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.options import PluginOption, ResultsArguments
+from aerocues.cli.options import NoPluginsOption, PluginOption, ResultsArguments
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -87,6 +87,7 @@ def report(
     ] = RESAMPLES,
     seed: SeedOption = 0,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Write all results into one interactive page.
 

@@ -24,6 +24,7 @@ from aerocues.cli.options import (
     MaxWidthOption,
     MemoryLimitOption,
     MethodPresetOption,
+    NoPluginsOption,
     PairsOption,
     PluginOption,
     RetryFailedOption,
@@ -130,6 +131,7 @@ def run(
     ] = False,
     top: TopOption = 15,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Measure combinations on the image pairs of a dataset.
 

@@ -11,6 +11,7 @@ import typer
 from aerocues.cli.options import (
     MaxKeypointsOption,
     MaxWidthOption,
+    NoPluginsOption,
     PairsOption,
     PluginOption,
     SeedOption,
@@ -78,6 +79,7 @@ def tune(
     workers: WorkersOption = None,
     seed: SeedOption = 0,
     plugin: PluginOption = None,
+    no_plugins: NoPluginsOption = False,
 ) -> None:
     """Search parameters on some scenes and keep those that also help on other scenes.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -16,6 +17,7 @@ from aerocues.methods.declarations import Declaration, read_declaration
 from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.matchers import MatcherRow
+from aerocues.methods.plugin_trial import tried_declaration
 from aerocues.methods.registry import Methods, opencv_methods
 
 KINDS: Mapping[str, tuple[str, ...]] = {
@@ -27,6 +29,8 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """The kinds of method that a plug-in of each group of entry points is."""
 
 
+CHOICE = "AEROCUES_PLUGINS"
+NONE = "none"
 Known = Mapping[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]]
 """Rows by kind and name."""
 SAYS_KIND = {
@@ -116,10 +120,10 @@ def register_class(reference: str) -> None:
     """
     try:
         found = load_factory(reference)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (Exception, SystemExit) as error:  # third-party code may raise anything
         raise MethodUnavailableError(
-            f"cannot import {reference!r}: {error}; write it as module:Class, of a module in this "
-            "folder or an installed one"
+            f"cannot import {reference!r}: {str(error) or type(error).__name__}; write it as "
+            "module:Class, of a module in this folder or an installed one"
         ) from error
     kind = next((kind for function, kind in SAYS_KIND.items() if hasattr(found, function)), None)
     if kind is None:
@@ -138,12 +142,38 @@ def _source_hash(module: str) -> str:
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:8]
 
 
-def _plug_ins() -> Iterator[_PlugIn]:
+def _installed() -> Iterator[_PlugIn]:
+    """The plug-ins of packages that are installed."""
     for group in KINDS:
         for entry in sorted(entry_points(group=f"aerocues.{group}"), key=lambda entry: entry.name):
             origin = f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
             yield _PlugIn(entry.name.upper(), origin, group, entry)
-    yield from _REGISTERED.values()
+
+
+def _plug_ins(problems: list[str]) -> Iterator[_PlugIn]:
+    """The plug-ins that take part: those that `AEROCUES_PLUGINS` allows, and registered ones."""
+    installed = list(_installed())
+    asked = os.environ.get(CHOICE)
+    if asked is not None:
+        names = {name.strip().lower() for name in asked.split(",")} - {"", NONE}
+        problems += [
+            f"{CHOICE} names {name!r}, which is not an installed plug-in; correct it"
+            for name in sorted(names.difference(*map(_called, installed)))
+        ]
+        installed = [plug_in for plug_in in installed if names & _called(plug_in)]
+    yield from (*installed, *_REGISTERED.values())
+
+
+def _called(plug_in: _PlugIn) -> set[str]:
+    """The names of a plug-in in `AEROCUES_PLUGINS`: its own, and that of its package."""
+    return {plug_in.name.lower(), plug_in.origin.partition(" ")[0].lower()}
+
+
+def _declared(plug_in: _PlugIn) -> Declaration:
+    """What a plug-in says about itself. What was registered has been imported here already."""
+    if plug_in in _REGISTERED.values():
+        return read_declaration(plug_in.entry, plug_in.group)
+    return tried_declaration(plug_in.entry, plug_in.group)
 
 
 def _detector(plug_in: _PlugIn, declared: Declaration) -> DetectorRow:
@@ -197,13 +227,15 @@ def installed_methods() -> Methods:
     """OpenCV's methods, those of the plug-ins installed beside aerocues, and registered ones.
 
     A plug-in that cannot be loaded, or describes itself wrongly, is listed as unavailable; one
-    whose name is malformed or taken is left out and told in ``problems``.
+    whose name is malformed or taken is left out and told in ``problems``. The environment variable
+    ``AEROCUES_PLUGINS`` leaves out all (``none``), or all but those it names (``name,...``, of
+    plug-ins or of packages).
     """
     base = opencv_methods()
     detectors, descriptors = dict(base.detectors), dict(base.descriptors)
     matchers = dict(base.matchers)
     problems: list[str] = []
-    for plug_in in _plug_ins():
+    for plug_in in _plug_ins(problems):
         known: Known = {
             "detector": detectors,
             "descriptor": descriptors,
@@ -215,7 +247,7 @@ def installed_methods() -> Methods:
                 f"{reason}; rename its entry point"
             )
             continue
-        declared = read_declaration(plug_in.entry, plug_in.group)
+        declared = _declared(plug_in)
         if "detector" in KINDS[plug_in.group]:
             detectors[plug_in.name] = _detector(plug_in, declared)
         if "descriptor" in KINDS[plug_in.group]:
