@@ -16,11 +16,18 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     arguments : sequence of str, optional
         What stands after ``aerocues``; by default what this process was started with.
     """
+    import os
     import sys
 
+    from aerocues.cli.memory_limit import WATCHED, Watched, limit_of_memory
+
+    words = sys.argv[1:] if arguments is None else arguments
+    limit = limit_of_memory()
+    if limit is not None and WATCHED not in os.environ:
+        sys.exit(Watched(words, limit).exit_code())
     from aerocues.cli.program import exit_code
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # names of files need not be Unicode
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(exit_code(sys.argv[1:] if arguments is None else arguments))
+    sys.exit(exit_code(words))

@@ -111,6 +111,12 @@ def exit_code(arguments: Sequence[str]) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _complain(f"{where}{error.strerror or error}; check the path, access and free space")
+    except MemoryError as error:
+        told = f" ({error})" if str(error) else ""
+        return _complain(
+            f"there is not enough memory{told}; free some, or ask for less: fewer --workers, "
+            "a smaller --max-width"
+        )
     except (KeyboardInterrupt, typer.Abort) as interruption:
         sys.stderr.write("interrupted\n")
         return getattr(interruption, "exit_code", INTERRUPTED)

@@ -17,13 +17,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TypedDict
 
-import psutil
 from distributed import Worker, WorkerPlugin, get_worker
 
 from aerocues.errors import EngineError, ImageError
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.worker_pool import WorkerPool
+from aerocues.processes.memory import memory_bytes
 from aerocues.progress import Activity, Watch
 from aerocues.results.versions import machine_name, software_versions
 
@@ -275,7 +275,7 @@ def measure(name: str, key: str, unit: Unit) -> Measured:
 def _memory_of(worker: Worker) -> int:
     """MB for one process, from the limit of the Dask worker or its share of the machine."""
     threads = worker.state.nthreads
-    total = psutil.virtual_memory().total
+    total = memory_bytes()
     share = int(total * min(1.0, threads / (os.cpu_count() or 1)))
     return int(MEMORY_SHARE * (worker.memory_manager.memory_limit or share) / threads / 2**20)
 

@@ -19,6 +19,7 @@ from typing import IO, Any, get_args
 
 from aerocues.methods.declarations import Declaration
 from aerocues.methods.descriptors import DescriptorType
+from aerocues.scratch_folders import scratch_prefix
 
 SECONDS = 30.0
 """That an import may take; packages of neural networks take up to 10."""
@@ -44,7 +45,7 @@ def tried_declaration(entry: EntryPoint, group: str) -> Declaration:
 
 def _imported(entry: EntryPoint, group: str) -> Declaration:
     """Import a plug-in in a new process, and end everything that it has started there."""
-    with tempfile.TemporaryDirectory(prefix="aerocues-plug-in-") as name:
+    with tempfile.TemporaryDirectory(prefix=scratch_prefix("plug-in")) as name:
         answer, printed, errors = (Path(name) / part for part in ("answer", "out", "err"))
         with printed.open("wb") as out, errors.open("wb") as err:
             code = _exit_code([entry.value, group, str(answer)], out, err)

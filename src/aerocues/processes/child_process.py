@@ -19,6 +19,7 @@ import psutil
 from aerocues.errors import EngineError
 from aerocues.processes.call import StageCall
 from aerocues.processes.heartbeat import Heartbeat
+from aerocues.scratch_folders import remove_left_over, scratch_prefix
 
 START_SECONDS = 120.0
 LAST_WORDS = 300
@@ -66,7 +67,8 @@ class ChildProcess:
         core: int = -1,
     ) -> None:
         self._memory_limit_mb = memory_limit_mb
-        self._folder = tempfile.TemporaryDirectory(prefix="aerocues-worker-")
+        remove_left_over()
+        self._folder = tempfile.TemporaryDirectory(prefix=scratch_prefix("worker"))
         page = Path(self._folder.name) / "heartbeat"
         page.touch()
         self._heartbeat = Heartbeat(page)

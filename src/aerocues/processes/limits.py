@@ -6,6 +6,7 @@ import os
 
 from aerocues.arguments import check_number, check_whole
 from aerocues.defaults import LEAST_MEMORY
+from aerocues.processes.memory import memory_bytes
 
 MEGABYTES = 1024
 SHARE_OF_MEMORY = 0.8
@@ -19,7 +20,7 @@ def usable_cores() -> int:
 
 
 def worker_count(workers: int | None) -> int:
-    """Processes at a time: as many as asked for, or as there are cores.
+    """Processes at a time: as many as asked for, or as there are cores and memory for.
 
     Raises
     ------
@@ -27,7 +28,8 @@ def worker_count(workers: int | None) -> int:
         If it is not a whole number, 1 or more.
     """
     if workers is None:
-        return usable_cores()
+        enough = int(SHARE_OF_MEMORY * memory_bytes() / 2**30 / LEAST_MEMORY)
+        return max(min(usable_cores(), enough), 1)
     check_whole("workers", workers, 1)
     return workers
 
@@ -47,7 +49,5 @@ def memory_mb(memory_limit: float | None) -> int | None:
 
 
 def share_of_memory(workers: int) -> int:
-    """Megabytes of each of some processes: their part of 80 % of the machine's memory."""
-    import psutil
-
-    return int(SHARE_OF_MEMORY * psutil.virtual_memory().total / 2**20 / workers)
+    """Megabytes of each of some processes: their part of 80 % of the memory."""
+    return int(SHARE_OF_MEMORY * memory_bytes() / 2**20 / workers)

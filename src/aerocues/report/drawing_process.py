@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from types import TracebackType
 
-import psutil
-
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
+from aerocues.processes.limits import share_of_memory
 from aerocues.report.drawn_matches import DrawnMatches
 
 SECONDS_TO_END = 5.0
-SHARE_OF_MEMORY = 0.8
 
 
 class DrawingProcess:
@@ -60,7 +58,7 @@ class DrawingProcess:
         return reason
 
     def _start(self) -> ChildProcess:
-        memory = int(SHARE_OF_MEMORY * psutil.virtual_memory().total / 2**20)
+        memory = share_of_memory(1)
         return ChildProcess("aerocues.report.drawing", self._context, memory_limit_mb=memory)
 
     def _stop(self, patience: float = 0.0) -> None:

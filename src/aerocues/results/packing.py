@@ -18,6 +18,7 @@ from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED
 from aerocues.results.run_record import record_content
 from aerocues.results.store import PARTS, PLAN, RUN, Store
 from aerocues.results.whole_files import parquet_content
+from aerocues.scratch_folders import remove_left_over, scratch_prefix
 
 if TYPE_CHECKING:
     import polars as pl
@@ -84,7 +85,8 @@ def unpack(file: Path) -> Path:
         If it is not such a file, is damaged, has a member outside of the folder, or the disk is
         full.
     """
-    folder = Path(tempfile.mkdtemp(prefix="aerocues-packed-"))
+    remove_left_over()
+    folder = Path(tempfile.mkdtemp(prefix=scratch_prefix("packed")))
     try:
         _extract(file, folder)
     except BaseException:
