@@ -31,13 +31,17 @@ OLDEST_VENV := .venv-oldest
 OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
 OLDEST_INSTALLED := $(OLDEST_VENV)/.installed
 
+AUDIT_VENV := .venv-audit
+AUDIT_INSTALLED := $(AUDIT_VENV)/.installed
+AUDIT_TOOLS := pip-audit==2.10.1 pip-licenses==5.5.5 cyclonedx-bom==7.5.0
+
 LIGHT_VENV := .venv-light
 LIGHT_INSTALLED := $(LIGHT_VENV)/.installed
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page audit bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -104,6 +108,17 @@ lint-page: setup
 	elif [ -n "$(CI)" ]; then echo "error: no TypeScript to check the page's JavaScript with" >&2; exit 1; \
 	else echo "skipped: the page's JavaScript is not checked, as Node or TypeScript cannot be installed here" >&2; fi
 
+# Their answers change from day to day: known weaknesses are asked for on the network, so that this is no part of `lint`.
+audit: setup $(AUDIT_INSTALLED) ## known weaknesses and licences of what requirements.lock pins, and its bill of materials (sbom.cdx.json)
+	$(AUDIT_VENV)/bin/cyclonedx-py requirements requirements.lock --output-file sbom.cdx.json
+	$(AUDIT_VENV)/bin/pip-licenses --python $(BIN)/python --from mixed --order license --format csv | grep '^"' | cut -c 1-100
+	$(AUDIT_VENV)/bin/pip-audit --disable-pip --require-hashes --strict -r requirements.lock
+
+$(AUDIT_INSTALLED): Makefile | $(BIN)/python
+	$(BIN)/python -m venv --clear $(AUDIT_VENV)
+	$(AUDIT_VENV)/bin/python -m pip install --quiet $(AUDIT_TOOLS)
+	@touch $@
+
 bench: setup ## the benchmarks of the framework itself
 	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
 
@@ -115,5 +130,5 @@ lock: setup ## pin the newest allowed versions in requirements.lock and requirem
 	$(LOCK) --group light --constraint requirements.lock --output-file requirements-light.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(AUDIT_VENV) sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache node_modules
