@@ -32,7 +32,8 @@ def interruptible() -> Iterator[None]:
         yield  # only the main thread may set handlers
         return
     before = {}
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    names = (name for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+    for number in (signal.Signals[name] for name in names):
         handler = signal.getsignal(number)
         if handler in (signal.SIG_DFL, signal.default_int_handler):
             before[number] = signal.signal(number, _raise)

@@ -15,6 +15,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from aerocues.errors import DatasetError
+from aerocues.expansion import why_too_large
 
 _BROKEN = (
     tarfile.TarError,
@@ -25,7 +26,8 @@ _BROKEN = (
     gzip.BadGzipFile,
     lzma.LZMAError,
 )
-Members = Iterator[tuple[str, IO[bytes]]]
+Members = Iterator[tuple[str, int, IO[bytes]]]
+"""Names, sizes and contents; no content is longer than its size."""
 
 
 def unpack_sequences(archive: Path, to: Path, marker: str, single: str) -> list[str]:
@@ -75,10 +77,13 @@ def _put(folder: Path, target: Path) -> None:
 
 
 def _extract(archive: Path, place: Path) -> None:
-    root = place.resolve()
+    root, size, expanded = place.resolve(), archive.stat().st_size, 0
     try:
         with _members(archive) as members:
-            for name, content in members:
+            for name, length, content in members:
+                expanded += length
+                if reason := why_too_large(size, expanded):
+                    raise DatasetError(f"{archive} is not unpacked: {reason} or more; remove it")
                 target = (root / PurePosixPath(name)).resolve()
                 if not target.is_relative_to(root):
                     raise DatasetError(
@@ -98,7 +103,13 @@ def _members(archive: Path) -> Iterator[Members]:
     """The regular files of an archive; links and devices are skipped."""
     if zipfile.is_zipfile(archive):
         with zipfile.ZipFile(archive) as zipped:
-            yield ((m.filename, zipped.open(m)) for m in zipped.infolist() if not m.is_dir())
+            yield (
+                (m.filename, m.file_size, zipped.open(m))
+                for m in zipped.infolist()
+                if not m.is_dir()
+            )
     else:
         with tarfile.open(archive) as tar:
-            yield ((m.name, file) for m in tar if m.isfile() and (file := tar.extractfile(m)))
+            yield (
+                (m.name, m.size, file) for m in tar if m.isfile() and (file := tar.extractfile(m))
+            )

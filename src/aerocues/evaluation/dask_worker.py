@@ -23,6 +23,7 @@ from aerocues.errors import EngineError, ImageError
 from aerocues.evaluation.engine import Finished
 from aerocues.evaluation.unit import Context, Unit
 from aerocues.evaluation.worker_pool import WorkerPool
+from aerocues.file_locks import try_lock
 from aerocues.processes.memory import memory_bytes
 from aerocues.progress import Activity, Watch
 from aerocues.results.versions import machine_name, software_versions
@@ -163,17 +164,13 @@ class UnitMeasurer(WorkerPlugin):
         if self._context.protocol.timing != "exclusive":
             yield
             return
-        import fcntl
-
-        path = Path(tempfile.gettempdir()) / f"aerocues-exclusive-{os.getuid()}.lock"
+        user = os.getuid() if hasattr(os, "getuid") else "user"
+        path = Path(tempfile.gettempdir()) / f"aerocues-exclusive-{user}.lock"
         with path.open("w") as file:
-            while True:
+            self.check()
+            while not try_lock(file):
+                time.sleep(SECONDS_BETWEEN_TRIES)
                 self.check()
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    break
-                except BlockingIOError:
-                    time.sleep(SECONDS_BETWEEN_TRIES)
             yield
 
     @contextlib.contextmanager

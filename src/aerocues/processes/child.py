@@ -17,6 +17,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from aerocues.processes.heartbeat import Heartbeat
+from aerocues.processes.inherited_pipe import taken_over
 
 PARENT_CHECK_SECONDS = 0.5
 
@@ -57,7 +58,7 @@ def run_child(serve: Callable[[Connection, Heartbeat], None]) -> None:
     )
     watch.start()
     try:
-        with Connection(int(descriptor)) as pipe:
+        with taken_over(int(descriptor)) as pipe:
             serve(pipe, Heartbeat(Path(page)))
     finally:
         shutil.rmtree(Path(page).parent, ignore_errors=True)

@@ -19,6 +19,7 @@ import psutil
 from aerocues.errors import EngineError
 from aerocues.processes.call import StageCall
 from aerocues.processes.heartbeat import Heartbeat
+from aerocues.processes.inherited_pipe import handed_over, interpreter
 from aerocues.scratch_folders import remove_left_over, scratch_prefix
 
 START_SECONDS = 120.0
@@ -68,7 +69,9 @@ class ChildProcess:
     ) -> None:
         self._memory_limit_mb = memory_limit_mb
         remove_left_over()
-        self._folder = tempfile.TemporaryDirectory(prefix=scratch_prefix("worker"))
+        self._folder = tempfile.TemporaryDirectory(
+            prefix=scratch_prefix("worker"), ignore_cleanup_errors=True
+        )
         page = Path(self._folder.name) / "heartbeat"
         page.touch()
         self._heartbeat = Heartbeat(page)
@@ -77,9 +80,9 @@ class ChildProcess:
         arguments = [
             str(value) for value in (theirs.fileno(), page, memory_limit_mb, core, os.getpid())
         ]
+        program, environment = interpreter()
         self._process = subprocess.Popen(
-            [sys.executable, "-m", module, *arguments],
-            pass_fds=[theirs.fileno()],
+            [program, "-m", module, *arguments],
             stdin=subprocess.DEVNULL,
             stdout=self._errors,
             stderr=self._errors,
@@ -87,8 +90,10 @@ class ChildProcess:
             env={
                 **os.environ,
                 **ONE_THREAD,
+                **environment,
                 "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path),
             },
+            **handed_over(theirs),
         )
         theirs.close()
         self._system = psutil.Process(self._process.pid)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.errors import StoreError
-from aerocues.results.expanded_size import why_too_large
+from aerocues.expansion import why_too_large
 
 # What numpy and zipfile raise for damaged files; NotImplementedError and RuntimeError are for
 # entries that seem to be compressed in another way, or encrypted.

@@ -9,22 +9,13 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-LARGEST_SMALL = 512 * 2**20
-"""Bytes that any file may become."""
-LARGEST_RATIO = 60
-"""Larger files may become so many times their own size; rows of a run become 5 to 10 times."""
+from aerocues.expansion import why_too_large
+
 BYTES_OF_A_VALUE = 16
 MOST_COLUMNS = 200
 END = 8
 # Numbers of the fields that matter here.
 SCHEMA, ROWS, ROW_GROUPS, GROUP_COLUMNS, COLUMN_FACTS, EXPANDED = 2, 3, 4, 1, 3, 6
-
-
-def why_too_large(size: int, expanded: int) -> str | None:
-    """Why a file of so many bytes that would become so many is not to be expanded, or None."""
-    if expanded <= max(LARGEST_SMALL, LARGEST_RATIO * size):
-        return None
-    return f"its {size:,} bytes would become {expanded / 1e9:.1f} GB"
 
 
 def why_not_decoded(parquet: bytes) -> str | None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from aerocues.errors import StoreError
 from aerocues.results.typesetting import as_latex, as_markdown
+from aerocues.results.whole_files import put_in_place
 
 if TYPE_CHECKING:
     import polars as pl
@@ -85,7 +86,7 @@ def write_file(target: Path, content: bytes | memoryview) -> None:
         with beside.open("wb") as file:
             file.write(content)
         if not is_special:
-            beside.replace(path)
+            put_in_place(beside, path)
     except OSError as error:
         raise StoreError(
             f"cannot write {target}: {error.strerror or error}; give another file"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 from aerocues.errors import StoreError
+from aerocues.file_locks import try_lock
 
 LOCK = ".lock"
 
@@ -29,21 +29,8 @@ def folder_lock(folder: Path) -> Iterator[None]:
             "`output`"
         ) from error
     with file:
-        if not _locked(file):
+        if not try_lock(file):
             raise StoreError(
                 f"another run is writing to {folder}; wait for it or choose another `output`"
             )
         yield
-
-
-def _locked(file: IO[str]) -> bool:
-    """Whether the lock was acquired."""
-    try:
-        import fcntl
-    except ImportError:
-        return True  # this system has no such locks
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True

@@ -13,7 +13,8 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import StoreError
-from aerocues.results.expanded_size import why_not_decoded, why_too_large
+from aerocues.expansion import why_too_large
+from aerocues.results.expanded_size import why_not_decoded
 from aerocues.results.reconstruction_store import CLOUDS, RECONSTRUCTED
 from aerocues.results.run_record import record_content
 from aerocues.results.store import PARTS, PLAN, RUN, Store

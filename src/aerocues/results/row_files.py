@@ -100,7 +100,9 @@ class RowFiles(FolderFiles):
             rows = self._read(files, None)
             self.write(f"{TOGETHER}{content_hash([file.name for file in files])}", rows)
             for file in files:
-                file.unlink(missing_ok=True)
+                # Where a reader keeps a file, as on Windows, its rows are there twice: no harm.
+                with contextlib.suppress(PermissionError):
+                    file.unlink(missing_ok=True)
 
     def _read(self, files: Sequence[Path], columns: Sequence[str] | None) -> pl.DataFrame:
         import polars as pl

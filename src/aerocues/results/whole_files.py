@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import time
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -14,6 +15,10 @@ from aerocues.results.checksums import with_checksum
 
 if TYPE_CHECKING:
     import polars as pl
+
+ON_WINDOWS = os.name == "nt"
+PAUSES = (0.05, 0.1, 0.2, 0.4, 0.5, 0.75)
+"""Seconds between tries."""
 
 
 def write_whole(contents: Mapping[Path, bytes | memoryview]) -> None:
@@ -37,7 +42,22 @@ def write_whole(contents: Mapping[Path, bytes | memoryview]) -> None:
                 os.fsync(file.fileno())
             ready.append((beside, target))
         for beside, target in ready:
+            put_in_place(beside, target)
+
+
+def put_in_place(beside: Path, target: Path) -> None:
+    """Give a file its name; an existing file is replaced.
+
+    Windows refuses that while a reader has it open: then it is tried again for two seconds.
+    """
+    for pause in PAUSES if ON_WINDOWS else ():
+        try:
             beside.replace(target)
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    beside.replace(target)
 
 
 def _remove(path: Path) -> None:
