@@ -6,6 +6,7 @@ import io
 import tarfile
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -24,7 +25,8 @@ def test_a_bomb_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
             for name in names:
                 zipped.writestr(name, zeros)
     else:
-        with tarfile.open(archive, f"w:{kind.partition('.')[2]}") as tar:
+        how: Any = f"w:{kind.partition('.')[2]}"
+        with tarfile.open(archive, how) as tar:
             for name in names:
                 member = tarfile.TarInfo(name)
                 member.size = len(zeros)

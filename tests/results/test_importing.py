@@ -181,6 +181,7 @@ def changed(**values: Any) -> list[dict[str, Any]]:
         ({"inliers": -1}, r"-1(\.0)?'? as inliers in row 2"),
         ({"seconds_per_1k_matches": -0.5}, "seconds_per_1k_matches in row 2"),
         ({"inliers": 10.5}, "inliers in row 2"),
+        ({"inliers": 1e40}, "inliers in row 2"),
         ({"matches": float("inf")}, "matches in row 2"),
         ({"inliers": 300}, "row 2 .*inliers.*matches"),
         ({"precision": 50.0}, "row 2 .*precision"),

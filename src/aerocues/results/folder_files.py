@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aerocues.errors import StoreError
-from aerocues.results.integrity import reason_of
+from aerocues.results.integrity import reason_of, without_words_of_libraries
 from aerocues.results.whole_files import write_whole
 
 if TYPE_CHECKING:
@@ -43,7 +43,8 @@ class FolderFiles:
         import polars as pl
 
         try:
-            return rows.collect()
+            with without_words_of_libraries():
+                return rows.collect()
         except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
             raise StoreError(
                 f"cannot read the results in {self.folder}: {reason_of(error)}; run the same "

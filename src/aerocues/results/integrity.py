@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import os
+import sys
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -114,10 +117,30 @@ def why_undecodable(content: bytes, schema: Mapping[str, Any] | None = None) -> 
     if schema is not None:
         how = {"schema": schema, "missing_columns": "insert", "extra_columns": "ignore"}
     try:
-        pl.scan_parquet(io.BytesIO(content), **how).collect()
+        with without_words_of_libraries():
+            pl.scan_parquet(io.BytesIO(content), **how).collect()
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
         return f"it cannot be decoded: {reason_of(error)}"
     return None
+
+
+@contextlib.contextmanager
+def without_words_of_libraries() -> Iterator[None]:
+    """Keep what polars prints when it panics on a damaged file from standard error."""
+    if sys.stderr is not None:
+        sys.stderr.flush()
+    try:
+        kept = os.dup(2)
+    except OSError:  # there is none
+        yield
+        return
+    try:
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 def reason_of(error: BaseException) -> str:

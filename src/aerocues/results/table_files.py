@@ -24,6 +24,8 @@ PARQUET_MARK = b"PAR1"
 # Texts that programs write for a missing number.
 NO_NUMBER = ("", "NA", "N/A", "NaN", "nan", "null", "None", "-")
 MAY_BE_NEGATIVE = ("seed",)
+LARGEST_WHOLE = 2**53
+"""Floating-point numbers beyond do not tell neighbouring whole numbers apart."""
 DECIMAL_COMMA = r"^\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*$"
 DECIMAL_POINT = r"^\s*[-+]?\d*\.\d+([eE][-+]?\d+)?\s*$"
 NO_THOUSANDS = r"^\s*[-+]?(0\d*|\d{4,}),\d+|^\s*[-+]?\d+,(\d{1,2}|\d{4,})([eE]|\s*$)"
@@ -186,6 +188,7 @@ def _converted(table: TableFile, column: Column) -> pl.Series:
     _refuse(
         table, values, ~numbers.is_finite() | (numbers != numbers.round()), "is not a whole number"
     )
+    _refuse(table, values, numbers.abs() > LARGEST_WHOLE, "is too large")
     return numbers.cast(pl.Int64)
 
 

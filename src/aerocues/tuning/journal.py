@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -72,11 +73,11 @@ class Journal:
         try:
             content = _races(path)[key]
             journal = cls(path, key, budget, begun=float(content["begun"]))
-            journal.steps = [Step(**step) for step in content["steps"]]
+            journal.steps = [_step(**step) for step in content["steps"]]
             if budget > float(content["budget"]):
                 complete = [not step.missing for step in journal.steps]
                 journal._cut(complete.index(False) if False in complete else len(complete))
-        except (KeyError, TypeError, ValueError):
+        except (KeyError, TypeError, ValueError, AttributeError):
             # No journal, or a damaged one: the measurements are kept independently of it.
             return cls(path, key, budget)
         return journal
@@ -126,10 +127,17 @@ class Journal:
         write_whole({self.path: json_content({**_races(self.path), self.key: own})})
 
 
+def _step(asked: str, spent: float, kept: float, missing: Sequence[str]) -> Step:
+    """A step as it was recorded; raises what a damaged one deserves."""
+    if not isinstance(missing, list) or not math.isfinite(float(spent) + float(kept)):
+        raise ValueError("a step is damaged")
+    return Step(str(asked), float(spent), float(kept), [str(key) for key in missing])
+
+
 def _races(path: Path) -> dict[str, Any]:
     """The journals in the file by key; empty if it cannot be read."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
