@@ -130,9 +130,10 @@ def test_a_seed_or_a_protocol_changes_every_key(views: Dataset) -> None:
 
 
 def test_parameters_change_the_keys_of_what_uses_them(views: Dataset) -> None:
-    context = context_of(views)
+    plain = Preset("plain", "plain", True)
+    context = replace(context_of(views), methods=METHODS.with_preset(plain))
     before = named_keys(plan_of(context))
-    preset = Preset("odd", "odd", True, detectors={"ORB": {"nfeatures": 9}})
+    preset = replace(plain, detectors={"ORB": {"nfeatures": 9}})
     after = named_keys(plan_of(replace(context, methods=METHODS.with_preset(preset))))
     changed = {name for name in before if before[name] != after[name]}
     assert changed == {name for name in before if name[1].startswith("ORB-")}

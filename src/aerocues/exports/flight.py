@@ -20,11 +20,11 @@ from aerocues.methods.descriptors import DescriptorRow
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.progress import Progress, StageProgress
 from aerocues.reconstruction.engine import link_images
-from aerocues.reconstruction.images import Prepared, read_prepared
 from aerocues.reconstruction.linked_scene import LINKED, VERIFIED
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.one_model import DATABASE
 from aerocues.reconstruction.options import ReconstructionOptions
+from aerocues.reconstruction.prepared import Prepared, read_prepared
 from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
 from aerocues.reconstruction.scene import IMAGES, CameraGroup, Scene
 from aerocues.reconstruction.scene_making import (

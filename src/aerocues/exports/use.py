@@ -19,7 +19,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select_one
-from aerocues.modelling import (
+from aerocues.modelling.reconstruct import (
     best_combinations,
     features_of_results,
     open_as_measured,

@@ -14,7 +14,7 @@ from aerocues.datasets.dataset import Geometry, Image
 from aerocues.datasets.decoded import DecodedSource, pixels_of
 from aerocues.datasets.decoding import FileSource
 from aerocues.datasets.file_sources import sources_alike
-from aerocues.errors import MethodFailedError, SelectionError
+from aerocues.errors import MethodFailedError
 from aerocues.methods.arrays import Features, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods

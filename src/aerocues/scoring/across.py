@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from aerocues.errors import ScoreError
 from aerocues.notebooks import as_html
 from aerocues.phrases import count
+from aerocues.scoring.combinations import has_chance_test, suitable_preset
 from aerocues.scoring.comparison import Comparison, Over, compare
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
@@ -194,6 +195,7 @@ def entries_of(
     ]
     if reconstruction is None and len(groups) > 1:
         reconstruction = False
+    preset = preset or _in_common([rows for _, _, rows in groups])
     models = [each.reconstructions() for each in results]
     found: list[tuple[Path, Entry]] = []
     for source, (dataset, machine), rows in groups:
@@ -214,6 +216,13 @@ def entries_of(
             f"the results suit different presets ({', '.join(presets)}); choose one with `preset`"
         )
     return _with_names(found)
+
+
+def _in_common(groups: Sequence[pl.DataFrame]) -> str | None:
+    """By inliers where only some have references, so that all are scored alike; None: as each."""
+    suitable = {suitable_preset(rows).name for rows in groups}
+    tested = all(has_chance_test(rows) for rows in groups)
+    return "inliers" if suitable == {"default", "inliers"} and tested else None
 
 
 def _by_dataset_and_machine(
