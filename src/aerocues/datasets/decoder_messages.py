@@ -7,6 +7,7 @@ import re
 import tempfile
 import threading
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import TypeVar
 
 STANDARD_ERROR = 2
@@ -24,10 +25,11 @@ def with_messages(decode: Callable[[], _Result]) -> tuple[_Result, bytes]:
 
     What is not of a decoder, such as a progress bar of another thread, is written afterwards.
     """
-    with _lock, tempfile.TemporaryFile() as file:
+    with _lock, ExitStack() as opened:
         try:
+            file = opened.enter_context(tempfile.TemporaryFile())
             before = os.dup(STANDARD_ERROR)
-        except OSError:  # closed, so that nobody writes there
+        except OSError:  # no room for the file; or nobody can write there
             return decode(), b""
         os.dup2(file.fileno(), STANDARD_ERROR)
         try:

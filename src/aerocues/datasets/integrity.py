@@ -17,7 +17,7 @@ _COMPLAINTS = re.compile(
     rb"|Invalid SOS parameters.*|Unsupported marker type.*)|TIFF_Error (.*)"
 )
 _EXTRANEOUS = re.compile(rb"Corrupt JPEG data: (\d+) extraneous bytes before marker 0xd9")
-MOST_PADDING = 64
+ANY_PADDING, MOST_PADDING = 4, 64
 _WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD9)})
 
 
@@ -59,9 +59,9 @@ def find_complaint(written: bytes, data: bytes) -> str | None:
 
 
 def _is_padding(data: bytes, count: int) -> bool:
-    """Whether an end marker follows so many equal bytes."""
-    if count > MOST_PADDING:
-        return False
+    """Whether the end marker comes after a few bytes, or after some that are equal."""
+    if count <= ANY_PADDING or count > MOST_PADDING:
+        return count <= ANY_PADDING
     return any(bytes([value]) * count + b"\xff\xd9" in data for value in (0, 0xFF))
 
 
