@@ -48,6 +48,14 @@ def test_models_from_results_and_figures_into_them(
     assert answer.out.count("6/6") == 2
     assert answer.err.splitlines()[0].startswith("1 of 2  ")
     assert f"aerocues score {results} --reconstruction" in answer.out
+    best = re.search(r"points   (.*)/points.ply", answer.out)
+    assert best is not None
+    assert (Path(best[1]) / "points.ply").is_file()
+    assert f"colmap gui --import_path {best[1]}/sparse/0 --database_path" in answer.out
+    undistort = f"colmap image_undistorter --image_path {models}/images --input_path {best[1]}"
+    assert undistort in answer.out
+    assert f"aerocues use {Path(best[1]).name} {flight} --max-keypoints" in answer.out
+    assert "COMBINATION" not in answer.out
     table = answer.out[: answer.out.index("\nmodels   ")]
     assert max(len(line) for line in table.splitlines()) <= 100
 

@@ -160,6 +160,7 @@ def test_the_next_commands_have_the_options_and_suit_the_images(
     assert answer.code == 0, answer.err
     for command in ("reconstruct", "run"):
         assert f" aerocues {command} {photos} {same.format('900 ')} -o" in answer.out
+    assert f"-HAM-BF --from {tmp_path / 'a'} --as python" in answer.out
 
     flat = call(
         "recommend", f"synthetic:{photos}/0.png", "-o", tmp_path / "b", "--max-pairs", 2, *two

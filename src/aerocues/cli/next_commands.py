@@ -83,6 +83,7 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     commands = [
         ["run", *measured.words(0), "-o", "results", "--combinations", few],
         ["report", str(found.folder)],
+        ["use", best, "--from", str(found.folder), "--as", "python"],
     ]
     if found.dataset.geometry == "epipolar":
         words = ["-o", "models", *_one_scene(found), "--combinations", best]

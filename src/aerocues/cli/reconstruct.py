@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.next_commands import AsMeasured
 from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
@@ -196,37 +196,36 @@ def reconstruct(
                 retry_failed=retry_failed,
                 progress=tally,
             )
-        succeeded = _print(models, dataset, results)
+        asked = AsMeasured(
+            images=dataset,
+            pairs=pairs,
+            subset=subset,
+            equalize=equalize or "none",
+            max_width=max_width or 0,
+            preset=preset or "default",
+            max_keypoints=max_keypoints,
+            seed=seed,
+            plugins=tuple(plugin or ()),
+        )
+        succeeded = _print(models, asked, results)
     if not succeeded:
         raise typer.Exit(NOTHING_SUCCEEDED)
 
 
-def _print(models: Models, dataset: str, results: Path | None) -> bool:
+def _print(models: Models, asked: AsMeasured, results: Path | None) -> bool:
     """Print models and what to do next; whether any of them is a success."""
     from aerocues.cli.console import standard_output
-    from aerocues.cli.models_table import of_combinations, print_models
+    from aerocues.cli.model_commands import best_model, model_commands
+    from aerocues.cli.models_table import print_models
+    from aerocues.reconstruction.exports import PLY
 
     print_models(models)
-    succeeded = "ok" in of_combinations(models.table())["status"]
-    console = standard_output()
-    for line in (
-        f"\nmodels   {models.folder}",
-        f"table    {models.folder / 'reconstructions.csv'}",
-        *_next(models, dataset, results, succeeded=succeeded),
-    ):
-        console.print(line, soft_wrap=True, markup=False)
-    return succeeded
-
-
-def _next(models: Models, dataset: str, results: Path | None, *, succeeded: bool) -> list[str]:
-    """What to do next; nothing that needs a success where there is none."""
-    if results is None and succeeded:
-        folder = shlex.quote(str(models.folder))
-        return [f"next     colmap gui --import_path {folder}/COMBINATION/sparse/0"]
-    if results is None:
-        named = shlex.quote(dataset)
-        return [f"next     aerocues recommend {named} --objective reconstruction"]
-    named = shlex.quote(str(results))
-    commands = [f"aerocues score {named} --reconstruction"] if succeeded else []
-    commands.append(f"aerocues report {named}")
-    return [f"{'next' if not i else '':9s}{command}" for i, command in enumerate(commands)]
+    best = best_model(models)
+    lines = [f"\nmodels   {models.folder}", f"table    {models.folder / 'reconstructions.csv'}"]
+    if best is not None:
+        lines.append(f"points   {models.path(best) / PLY}")
+    for number, command in enumerate(model_commands(models, best, asked, results)):
+        lines.append(f"{'' if number else 'next':9s}{command}")
+    for line in lines:
+        standard_output().print(line, soft_wrap=True, markup=False)
+    return best is not None

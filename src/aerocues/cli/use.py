@@ -96,6 +96,12 @@ def use(
             help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
         ),
     ] = None,
+    features_width: Annotated[
+        int | None,
+        typer.Option(
+            min=16, metavar="PIXELS", help="Find features in smaller images; files stay large."
+        ),
+    ] = None,
     features: FeaturesOption = None,
     timeout: Annotated[
         str, typer.Option(metavar="TIME", help="CPU time limit of one stage, such as 30min.")
@@ -131,6 +137,7 @@ def use(
             pairs=pairs,
             subset=subset,
             refine_keypoints=refine_keypoints,
+            features_width=features_width,
             features=features,
             timeout=timeout,
             memory_limit=memory_limit,

@@ -20,6 +20,8 @@ from aerocues.methods.descriptors import DescriptorRow
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.progress import Progress, StageProgress
 from aerocues.reconstruction.engine import link_images
+from aerocues.reconstruction.feature_size import smaller
+from aerocues.reconstruction.images import Prepared, read_prepared
 from aerocues.reconstruction.linked_scene import LINKED, VERIFIED
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.one_model import DATABASE
@@ -81,7 +83,7 @@ class Flight:
         """The descriptors of an image, a row for each of its keypoints."""
         scene, one = self.scene, self.combination
         folder = FeatureFolder(scene.features, scene.methods, scene.measurement(), scene.machine)
-        image = scene.dataset.image(name)
+        image = smaller(scene.dataset.image(name), scene.protocol.features_width)
         found = folder.described(image, one.detector, one.descriptor)
         if found is None:  # there were no keypoints to describe
             row = self.descriptor

@@ -77,6 +77,7 @@ def use(
     pairs: str | None = None,
     subset: str | None = None,
     refine_keypoints: bool | None = None,
+    features_width: int | None = None,
     features: str | Path | None = None,
     timeout: float | str = STAGE_TIMEOUT,
     memory_limit: float | None = None,
@@ -117,6 +118,9 @@ def use(
         all pairs where positions are not known.
     refine_keypoints : bool, optional
         Whether keypoints of tracks are refined, as in `reconstruct`.
+    features_width : int, optional
+        Pixels to which images are shrunk to find features in them; files have them in pixels of the
+        images.
     features : path, optional
         Folder in which features are kept, and found if a run kept them there; that of `results`
         by default.
@@ -169,7 +173,9 @@ def use(
     limit = settings.max_keypoints or (FLIGHT_KEYPOINTS if max_keypoints is None else 0)
     options = ReconstructionOptions(
         preset=settings.preset,
-        protocol=ReconstructionProtocol(settings.seed, limit, "refine"),
+        protocol=ReconstructionProtocol(
+            settings.seed, limit, "refine", features_width=features_width
+        ),
         refine_keypoints=refine_keypoints,
         features=features or features_of_results(measured),
         workers=1,
