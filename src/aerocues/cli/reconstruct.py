@@ -200,6 +200,8 @@ def reconstruct(
             images=dataset,
             pairs=pairs,
             subset=subset,
+            band=band,
+            every=every,
             equalize=equalize or "none",
             max_width=max_width or 0,
             preset=preset or "default",

@@ -21,7 +21,6 @@ from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.progress import Progress, StageProgress
 from aerocues.reconstruction.engine import link_images
 from aerocues.reconstruction.feature_size import smaller
-from aerocues.reconstruction.images import Prepared, read_prepared
 from aerocues.reconstruction.linked_scene import LINKED, VERIFIED
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.one_model import DATABASE
