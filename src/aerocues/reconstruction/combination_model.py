@@ -7,6 +7,7 @@ from typing import Any
 
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import Outcome, without_features, without_links
+from aerocues.reconstruction.feature_size import features_scale
 from aerocues.reconstruction.mapping import map_scene
 from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
 from aerocues.reconstruction.matching import SceneMatcher
@@ -18,7 +19,12 @@ from aerocues.reconstruction.one_model import (
     ModelMaker,
 )
 from aerocues.reconstruction.precision import keypoint_error
-from aerocues.reconstruction.refining import Inliers, refine_scene, refinement_figures
+from aerocues.reconstruction.refining import (
+    Inliers,
+    refine_scene,
+    refinement_figures,
+    warm_up_refinement,
+)
 from aerocues.reconstruction.verification import linked_pairs, verify
 
 MATCHES = "matches.npz"
@@ -81,9 +87,11 @@ class CombinationModel(ModelMaker):
         refinement = self.scene.protocol.refinement
         if refinement is None:
             return matched
+        warm_up_refinement(refinement)
         dataset = self.scene.dataset
+        scale = features_scale(dataset.images[0], self.scene.protocol.features_width)
         sharper, found = self.timed(
-            OPTIONAL_STAGE, lambda: refine_scene(dataset, matched, pairs, refinement)
+            OPTIONAL_STAGE, lambda: refine_scene(dataset, matched, pairs, refinement, scale)
         )
         self.row.update(refinement_figures(found))
         return sharper

@@ -52,7 +52,11 @@ class GrayImages:
 
 
 def refine_scene(
-    dataset: Dataset, matched: MatchedScene, linked: Mapping[Names, Inliers], refinement: Refinement
+    dataset: Dataset,
+    matched: MatchedScene,
+    linked: Mapping[Names, Inliers],
+    refinement: Refinement,
+    scale: float = 1.0,
 ) -> tuple[MatchedScene, RefinedKeypoints]:
     """A scene whose keypoints lie where their tracks look alike.
 
@@ -63,6 +67,8 @@ def refine_scene(
     linked : mapping of pairs to (M,) bool
         Which matches of the pairs that beat chance agree with the geometry of the pair.
     refinement : Refinement
+    scale : float
+        Pixels of the images to one of those that features were found in.
 
     Returns
     -------
@@ -83,12 +89,13 @@ def refine_scene(
     }
     found = refine_tracks(
         GrayImages(dataset, refinement.blur),
-        [matched.keypoints[name].xy for name in names],
+        [_scaled(matched.keypoints[name].xy, 1 / scale) for name in names],
         pairs,
         refinement,
+        scale,
     )
     keypoints = {
-        name: replace(matched.keypoints[name], xy=xy)
+        name: replace(matched.keypoints[name], xy=_scaled(xy, scale))
         for name, xy in zip(names, found.xy, strict=True)
     }
     rejected = dict(zip(names, found.rejected, strict=True))
@@ -97,6 +104,24 @@ def refine_scene(
         for (first, second), matches in matched.pairs.items()
     }
     return replace(matched, keypoints=keypoints, pairs=kept), found
+
+
+def _scaled(xy: Float32Array, scale: float) -> Float32Array:
+    """Pixels of larger or smaller images; the centre of the top-left pixel is (0, 0)."""
+    if scale == 1.0:
+        return xy
+    return ((xy + 0.5) * scale - 0.5).astype(np.float32)
+
+
+def warm_up_refinement(refinement: Refinement) -> None:
+    """Compile what refines keypoints, so that no model is charged for it."""
+    random = np.random.default_rng(0)
+    images = random.uniform(0, 255, (2, 64, 64)).astype(np.float32)
+    grid = np.stack(np.meshgrid(*[np.arange(16, 49, 8)] * 2), axis=-1).reshape(-1, 2)
+    points = grid.astype(np.float32)
+    numbers = np.arange(len(points), dtype=np.int32)
+    matches = Matches(np.stack([numbers, numbers], axis=1), np.zeros(len(points), np.float32))
+    refine_tracks(lambda number: images[number], [points] * 2, {(0, 1): matches}, refinement)
 
 
 def refinement_figures(found: RefinedKeypoints) -> Row:
