@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import aerocues
 from aerocues.cli.program import exit_code
 from aerocues.cli.use import As
 from aerocues.exports.targets import TARGETS
+from tests.cli.conftest import Call
 from tests.reconstruction.scenes import write_scene
 
 NAME = "ORB-ORB-HAM-BF"
@@ -59,6 +61,22 @@ def test_a_folder_with_other_files_stays_as_it_is(
     assert exit_code(["use", NAME, str(photos), "--as", "colmap", "-o", str(tmp_path)]) == 2
     assert "mine.txt" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_what_a_tool_needs_is_asked_for_first(
+    photos: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: Call
+) -> None:
+    words = ("use", NAME, photos, "--as", "hloc", "-o", tmp_path / "out")
+    monkeypatch.setattr("aerocues.exports.targets.find_spec", lambda name: None)
+    answer = call(*words)
+    assert (answer.code, "aerocues[exports]" in answer.err) == (2, True)
+    assert not (tmp_path / "out").exists()
+    spaced = tmp_path / "images"
+    spaced.mkdir()
+    for number in range(2):
+        shutil.copyfile(photos / f"{number}.png", spaced / f"image {number}.png")
+    answer = call("use", NAME, spaced, "--as", "bundler", "-o", tmp_path / "out")
+    assert (answer.code, "image 0.png" in answer.err) == (2, True)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 from aerocues.datasets.dataset import Dataset
-from aerocues.errors import StoreError
+from aerocues.errors import ReconstructionError, StoreError
 from aerocues.exports.flight import Flight, linked_flight
 from aerocues.exports.targets import Target
 from aerocues.progress import Progress
@@ -38,6 +38,7 @@ def write_files(
         If the folder holds something else, or the flight cannot be linked.
     """
     write = row.load()
+    _check_names(row, dataset)
     _check(folder, row, combination.upper())
     work = folder / WORK
     try:
@@ -65,6 +66,16 @@ def _figures(flight: Flight) -> dict[str, int]:
         "verified_pairs": len(flight.verified),
         "verified_matches": sum(len(each) for each in flight.verified.values()),
     }
+
+
+def _check_names(row: Target, dataset: Dataset) -> None:
+    names = [image.name for image in dataset.images]
+    unfit = [name for name in names if row.separator and row.separator in name]
+    if unfit:
+        raise ReconstructionError(
+            f"names of images cannot contain {row.separator!r} in the files of {row.name}; rename "
+            f"{unfit[0]!r}"
+        )
 
 
 def _check(folder: Path, row: Target, combination: str) -> None:

@@ -58,7 +58,8 @@ def write_kapture(flight: Flight, folder: Path) -> list[str]:
 
 
 def _length(flight: Flight) -> int:
-    return max(int(flight.descriptors(name).shape[1]) for name in flight.images)
+    described = next(name for name in flight.images if len(flight.linked.keypoints[name]))
+    return int(flight.descriptors(described).shape[1])
 
 
 def _write_matches(flight: Flight, place: Path) -> None:

@@ -49,10 +49,11 @@ def write_openmvg(flight: Flight, folder: Path) -> list[str]:
         stem = Path(name).stem
         rows = keypoint_rows(flight.linked.keypoints[name])
         np.savetxt(place / f"{stem}.feat", rows, "%.9g")
-        if row.columns <= length:
-            descriptors = _filled(flight.descriptors(name).astype(dtype), length)
+        descriptors = flight.descriptors(name)
+        if descriptors.shape[1] <= length:
+            content = _filled(descriptors.astype(dtype), length).tobytes()
             header = np.array([len(rows)], np.uint64).tobytes()
-            (place / f"{stem}.desc").write_bytes(header + descriptors.tobytes())
+            (place / f"{stem}.desc").write_bytes(header + content)
     putative = {names: each.indices for names, each in flight.linked.pairs.items()}
     for file, matches in ((PUTATIVE, putative), (GEOMETRIC, flight.verified)):
         text = match_list(flight.images, matches)

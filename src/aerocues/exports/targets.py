@@ -34,6 +34,8 @@ class Target:
         Where the format has the centre of the top-left pixel, and in what units.
     needs : str
         A package that is not installed with aerocues.
+    separator : str
+        The character between names in its files, which names of images cannot have then.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Target:
     writer: str
     conventions: str = ""
     needs: str = ""
+    separator: str = ""
 
     def load(self) -> Callable[..., Any]:
         """The function that writes it.
@@ -78,6 +81,7 @@ TARGETS: tuple[Target, ...] = (
         "hloc:write_hloc",
         "(0, 0), pixels",
         needs="h5py",
+        separator=" ",
     ),
     Target(
         "opensfm",
@@ -106,8 +110,16 @@ TARGETS: tuple[Target, ...] = (
         "files",
         "bundler:write_bundler",
         "(0, 0), pixels, row before column",
+        separator=" ",
     ),
-    Target("kapture", "a kapture dataset", "files", "kapture:write_kapture", "(0.5, 0.5), pixels"),
+    Target(
+        "kapture",
+        "a kapture dataset",
+        "files",
+        "kapture:write_kapture",
+        "(0.5, 0.5), pixels",
+        separator=",",
+    ),
     Target("rtabmap", "arguments of RTAB-Map", "settings", "rtabmap:rtabmap_settings"),
     Target("odm-options", "options of ODM", "settings", "odm_options:odm_options"),
 )
