@@ -109,7 +109,7 @@ def use(
     memory_limit: MemoryLimitOption = None,
     plugin: PluginOption = None,
 ) -> None:
-    """Use a combination elsewhere: as a program, or in another tool.
+    """Use a combination: as a program, or in another tool.
 
     A program (python, cpp) finds the same keypoints, matches and geometry as were measured, and
     needs nothing but OpenCV. Files hold the features, matches and verified pairs of a whole flight;
