@@ -7,13 +7,14 @@ Parquet like any other, and it is one file, which is replaced and copied as a wh
 from __future__ import annotations
 
 import zlib
-from typing import BinaryIO
+from io import BufferedIOBase, FileIO
 
 MARK = b"aerocues-crc32:"
 DIGITS = 8
 END = 8
 """Bytes after the footer: its length, and the mark of Parquet."""
 BLOCK = 1 << 18
+RawFile = FileIO | BufferedIOBase
 
 
 def with_checksum(parquet: bytes) -> bytes:
@@ -24,19 +25,20 @@ def with_checksum(parquet: bytes) -> bytes:
     return b"".join((pages, MARK, _written(checksum), footer))
 
 
-def agrees_with_checksum(file: BinaryIO) -> bool | None:
+def agrees_with_checksum(file: RawFile) -> bool | None:
     """Whether a file is as it was written; None where it has no checksum, like older ones."""
     place = _place(file)
     if place is None:
         return None
-    # Block by block: a file as a whole would cost more for its memory than for its checksum.
+    # Into one block of memory: new memory would cost more than the checksum.
+    buffer = memoryview(bytearray(BLOCK))
     file.seek(0)
-    checksum = _of_next(file, place, 0)
+    checksum = _of_next(file, buffer, place, 0)
     stated = file.read(len(MARK) + DIGITS)[len(MARK) :]
-    return stated == _written(_of_next(file, None, checksum))
+    return stated == _written(_of_next(file, buffer, None, checksum))
 
 
-def _place(file: BinaryIO) -> int | None:
+def _place(file: RawFile) -> int | None:
     """Where the mark is; in a file with a damaged end it is looked for."""
     size = file.seek(0, 2)
     file.seek(max(size - END, 0))
@@ -50,15 +52,15 @@ def _place(file: BinaryIO) -> int | None:
     return place if place >= 0 else None
 
 
-def _of_next(file: BinaryIO, length: int | None, checksum: int) -> int:
+def _of_next(file: RawFile, buffer: memoryview, length: int | None, checksum: int) -> int:
     """The checksum that goes on over the next bytes; all there are, without a length."""
     left = length
     while left != 0:
-        block = file.read(BLOCK if left is None else min(BLOCK, left))
-        if not block:
+        size = file.readinto(buffer if left is None else buffer[:left])
+        if not size:
             break
-        checksum = zlib.crc32(block, checksum)
-        left = None if left is None else left - len(block)
+        checksum = zlib.crc32(buffer[:size], checksum)
+        left = None if left is None else left - size
     return checksum
 
 

@@ -10,8 +10,9 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from io import FileIO
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from aerocues.errors import DamageWarning, StoreError
 from aerocues.results.checksums import agrees_with_checksum
@@ -96,7 +97,7 @@ def check_table(
 
 
 def _why_unsound(
-    stream: BinaryIO, agrees: bool | None, schema: Mapping[str, Any] | None, *, decode: bool
+    stream: FileIO, agrees: bool | None, schema: Mapping[str, Any] | None, *, decode: bool
 ) -> str | None:
     """What is wrong with a file that does not agree with its checksum, or has none."""
     if agrees is False:
