@@ -75,6 +75,12 @@ def test_colmaps_default_may_be_the_best() -> None:
     assert found.unfinished == (str(ORB), str(STAR))
 
 
+def test_colmaps_default_alone_has_beaten_nothing() -> None:
+    found = final(model(BASELINE))
+    assert found.best is None
+    assert found.baseline is not None
+
+
 def test_a_final_without_a_model_has_no_best() -> None:
     found = final(model(SIFT, status="no_model", registered_images=None))
     assert found.best is None

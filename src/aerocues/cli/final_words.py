@@ -22,11 +22,14 @@ MUCH_FASTER = 0.67
 COLMAP_DEFAULT = "COLMAP's default"
 
 
-def headline(final: Final) -> str:
-    """``Take X: 18 of 18 images in place, 2,362 points ...; COLMAP's default: 18, 1,9xx ...``."""
+def headline(final: Final, leader: str) -> str:
+    """``Take X: 18 of 18 images in place, 2,362 points ...; COLMAP's default: 18, 1,9xx ...``.
+
+    Without a model it is the leader of the race.
+    """
     best, baseline = final.best, final.baseline
     if best is None:
-        return "No model could be made: the answer is that of the race."
+        return f"Take {leader}, which leads the race: no model was finished in time."
     if is_baseline(best):
         other = final.best_combination
         beside = f" The best combination, {name_in_row(other)}: {_short(other)}." if other else ""

@@ -35,7 +35,7 @@ def answer(found: Recommendation) -> str:
     """The best combination, its probability, the reasons and the cost."""
     final, best = found.final, found.ranked.row(0, named=True)
     parts = [
-        _paragraph(headline(final) if final else f"Take {found.best}."),
+        _paragraph(headline(final, found.leader) if final else f"Take {found.best}."),
         "",
         *(_labelled("models", notes(final)) if final else ()),
         *_labelled("race", [_certainty(found, best)]),

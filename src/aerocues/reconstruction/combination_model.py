@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from aerocues.pipeline.features import StageError
 from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import Outcome, without_features, without_links
 from aerocues.reconstruction.feature_size import features_scale
@@ -26,12 +27,25 @@ from aerocues.reconstruction.refining import (
     warm_up_refinement,
 )
 from aerocues.reconstruction.verification import linked_pairs, verify
+from aerocues.results.metrics import Row
 
 MATCHES = "matches.npz"
 
 
 class CombinationModel(ModelMaker):
     """Detects, describes and matches by a combination, and has COLMAP verify and map."""
+
+    def match_ahead(self) -> Row:
+        """Leave features and matches for later: they depend on no camera.
+
+        What fails here fails again when the model is made, which then says so.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        try:
+            self._matched()
+        except StageError as failure:
+            return {"status": failure.status, "message": failure.message}
+        return self.row
 
     def link(self) -> Linked | Outcome:
         matched = self._matched()

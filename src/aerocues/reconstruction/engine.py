@@ -14,6 +14,7 @@ from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
 from aerocues.reconstruction.linked_scene import Links
+from aerocues.reconstruction.matching import Matching
 from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row
@@ -138,10 +139,40 @@ class _Lane:
         self.child.send(self.combination)
 
 
+class _Ahead:
+    """Processes that match images for models that are made later."""
+
+    def __init__(
+        self, scene: Scene, limits: ReconstructionLimits, combinations: Iterable[Combination]
+    ) -> None:
+        self._scene, self._limits = scene, limits
+        self._waiting = collections.deque(combinations)
+        self.children: list[ChildProcess] = []
+
+    def begin(self, busy: int) -> None:
+        """Use processes that have nothing to do."""
+        while self._waiting and busy + len(self.children) < self._limits.workers:
+            self.children.append(_child(self._scene, self._limits))
+            self.children[-1].send(Matching(self._waiting.popleft()))
+
+    def end(self, ready: Sequence[object]) -> None:
+        """Stop those that are done or take too long; making the model will say why."""
+        for child in list(self.children):
+            if child.pipe in ready or child.overrun(self._limits.seconds):
+                child.stop()
+                self.children.remove(child)
+
+
 def run_reconstructions(
-    scene: Scene, groups: Sequence[Group], limits: ReconstructionLimits, watch: Watch
+    scene: Scene,
+    groups: Sequence[Group],
+    limits: ReconstructionLimits,
+    watch: Watch,
+    ahead: Iterable[Combination] = (),
 ) -> Generator[tuple[Combination, Row, bool], None, None]:
     """Reconstruct all groups, or as many as are finished before the deadline.
+
+    Processes that have nothing to do meanwhile match images for the combinations `ahead`.
 
     Yields
     ------
@@ -149,14 +180,17 @@ def run_reconstructions(
         The combination, the row of its reconstruction (even if its process died), and whether it
         was the last of its group.
     """
-    queue = collections.deque(groups)
+    queue, matching = collections.deque(groups), _Ahead(scene, limits, ahead)
     lanes: list[_Lane] = []
     try:
         while (queue or lanes) and time.monotonic() < limits.deadline:
             while queue and len(lanes) < limits.workers:
                 lanes.append(_Lane(queue.popleft(), _child(scene, limits)))
-            watch([Activity(n, *lane.child.doing()) for n, lane in enumerate(lanes)])
-            ready = wait([lane.child.pipe for lane in lanes], POLL_SECONDS)
+            matching.begin(len(lanes))
+            children = [*(lane.child for lane in lanes), *matching.children]
+            watch([Activity(n, *child.doing()) for n, child in enumerate(children)])
+            ready = wait([child.pipe for child in children], POLL_SECONDS)
+            matching.end(ready)
             for lane in list(lanes):
                 if lane.child.pipe in ready:
                     found = lane.child.receive()
@@ -168,8 +202,8 @@ def run_reconstructions(
                     queue.appendleft(lane.group)
                 yield lane.combination, _row_of(found), not lane.group
     finally:
-        for lane in lanes:
-            lane.child.stop()
+        for child in (*(lane.child for lane in lanes), *matching.children):
+            child.stop()
 
 
 def _row_of(found: object) -> Row:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections import OrderedDict
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +20,13 @@ from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.reconstruction.scene import Scene
 
 HELD_IN_MEMORY = 64
+
+
+@dataclass(frozen=True)
+class Matching:
+    """Work of a process: features and matches of a combination, for its model later."""
+
+    combination: Combination
 
 
 class SceneMatcher:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -106,7 +106,7 @@ class _Reconstruction:
         made = bool(first and not rows)
         if made:
             self._tell.planned(total, 0)
-            rows.update(self._made(first))
+            rows.update(self._made(first, [group[0] for group in in_groups(self._chosen)]))
         if BASELINE in rows:  # else the deadline came before
             self._calibrate(rows[BASELINE])
         require_focal_lengths(self._scene.cameras, self._scene.protocol)
@@ -159,9 +159,11 @@ class _Reconstruction:
         self._scene = replace(self._scene, cameras=with_calibrated(groups, found))
         self._tell.note(told)
 
-    def _made(self, combinations: list[Combination]) -> Iterator[tuple[Combination, Row]]:
-        scene, limits = self._scene, self._limits
-        running = run_reconstructions(scene, in_groups(combinations), limits, self._tell.watch)
+    def _made(
+        self, combinations: list[Combination], ahead: Sequence[Combination] = ()
+    ) -> Iterator[tuple[Combination, Row]]:
+        scene, limits, watch = self._scene, self._limits, self._tell.watch
+        running = run_reconstructions(scene, in_groups(combinations), limits, watch, ahead)
         with contextlib.closing(running):  # an interruption ends the processes here and now
             for combination, figures, last in running:
                 when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}

@@ -1,7 +1,7 @@
 """The process that reconstructs: ``python -m aerocues.reconstruction.worker``.
 
-It receives a scene and then images to prepare, a combination, or links to find, and sends back the
-result. COLMAP can abort its process; then only this work is lost.
+It receives a scene and then images to prepare, a combination, or matches or links to find, and
+sends back the result. COLMAP can abort its process; then only this work is lost.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     from aerocues.reconstruction.combination_model import CombinationModel
     from aerocues.reconstruction.images import prepare_image
     from aerocues.reconstruction.linked_scene import LinkMaker, Links
+    from aerocues.reconstruction.matching import Matching
     from aerocues.results.reconstruction_schema import BASELINE
 
     scene = pipe.recv()
@@ -35,6 +36,8 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
             if isinstance(work, Combination):
                 maker = BaselineModel if work == BASELINE else CombinationModel
                 found: object = maker(scene, work, heartbeat.announce).make()
+            elif isinstance(work, Matching):
+                found = CombinationModel(scene, work.combination, heartbeat.announce).match_ahead()
             elif isinstance(work, Links):
                 found = LinkMaker(scene, work.combination, heartbeat.announce).make()
             else:

@@ -62,9 +62,10 @@ class Final:
 
     @property
     def best(self) -> Row | None:
-        """The row of the best model; None where nothing was built."""
+        """The row of the best model; None where no combination was finished, or no model built."""
+        finished = any(name_in_row(row) != str(BASELINE) for row in self.rows)
         built = [row for row in self.rows if row["registered_images"]]
-        return built[0] if built else None
+        return built[0] if built and finished else None
 
     @property
     def baseline(self) -> Row | None:
