@@ -77,7 +77,7 @@ def test_a_recommendation_tells_what_it_left_out(
     call: Call, images: Path, tmp_path: Path, pairs: tuple[str, ...]
 ) -> None:
     (images / "1.png").write_bytes((images / "1.png").read_bytes()[:5000])
-    words = ("--max-pairs", 6, "--budget", "60s", "--max-keypoints", 300, *pairs)
+    words = ("--max-pairs", 6, "--budget", "1h", "--no-final", "--max-keypoints", 300, *pairs)
     answer = call("recommend", images, "-o", tmp_path / "race", *TWO, *words)
     assert answer.code == 0
     assert "left out" in answer.out

@@ -13,7 +13,7 @@ import pytest
 import aerocues
 from aerocues.datasets.dataset import Dataset, Image
 from aerocues.datasets.decoding import FileSource
-from aerocues.errors import ReconstructionError
+from aerocues.errors import AerocuesError, ReconstructionError
 from aerocues.results.metrics import Row
 from tests.methods.distribution import write_distribution
 from tests.methods.pictures import textured
@@ -166,5 +166,5 @@ def test_an_image_that_cannot_be_read_is_left_out(
     other = write_scene(tmp_path / "other")
     for image in (tmp_path / "other").rglob("*.png"):
         image.write_bytes(b"")
-    with pytest.raises(ReconstructionError, match="9 of 9 images cannot be read"):
+    with pytest.raises(AerocuesError, match=r"view_\d\.png"):
         only_row(other, tmp_path / "more", quick)

@@ -95,7 +95,7 @@ def at_equal_footing(
     Raises
     ------
     ImageError
-        If the image in the middle cannot be read.
+        If no image can be read.
     """
     if not limit.count or not preset.chance_test:
         return preset, []
