@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import cv2
 import pytest
 
 import aerocues
@@ -62,3 +63,15 @@ def test_a_race_alone_has_no_final(landscape: Dataset, tmp_path: Path) -> None:
     assert found.final is None
     assert found.best == found.leader
     assert not (tmp_path / "race" / "models").exists()
+
+
+@pytest.mark.slow
+def test_images_without_a_focal_length_have_a_final(landscape: Dataset, tmp_path: Path) -> None:
+    """The images are flat: COLMAP's default does not determine it either."""
+    photos = tmp_path / "photos"
+    photos.mkdir()
+    for image in landscape.images[:4]:
+        cv2.imwrite(str(photos / image.name), image.read().bgr)
+    found = aerocues.recommend(photos, FEW, tmp_path / "race", **OPTIONS)
+    assert found.final is not None
+    assert "ORB" in {row["detector"] for row in found.final.rows}

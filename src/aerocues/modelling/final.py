@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.errors import ReconstructionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT
@@ -82,7 +83,11 @@ def build_final(
     )
     folder, names = found.folder / MODELS, [str(each) for each in asked]
     store = open_results(found.folder, scene)
-    models = reconstruct_scene(scene, names, folder, options, progress, store)
+    try:
+        models = reconstruct_scene(scene, names, folder, options, progress, store)
+    except ReconstructionError:  # no focal length is known, and the images do not determine one
+        options = replace(options, protocol=replace(options.protocol, intrinsics="refine"))
+        models = reconstruct_scene(scene, names, folder, options, progress, store)
     images = len(scene.images), len(dataset.images)
     final = Final.of_models(models.table(), asked, images, folder, found.objective)
     return final if final.rows else None
