@@ -17,6 +17,7 @@ from aerocues.evaluation.run import run
 from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.methods.presets import Preset
 from aerocues.methods.registry import opencv_methods
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.correspondence import transfer
@@ -60,6 +61,9 @@ def test_exact_search_changes_no_row_of_any_combination(graf: Dataset, tmp_path:
     assert_same_rows(estimated, shared)
 
 
+AS_OPENCV = Preset("as_opencv", "keypoints where OpenCV has them", True, unbiased=False)
+
+
 def both(pair: Pair, dataset: Dataset, text: str) -> tuple[list[Keypoints], list[Features]]:
     """Keypoints before `compute` and features after it, of both images."""
     methods, combination = opencv_methods(), Combination.parse(text)
@@ -96,7 +100,8 @@ def test_a_stale_list_of_keypoints_would_destroy_the_matches(
     pair = graf.pairs[position]
     assert pair.homography is not None
     one = Dataset(graf.name, graf.images, [pair], graf.geometry)
-    [row] = run(one, text, tmp_path / "r", engine=InlineEngine()).table().to_dicts()
+    found = run(one, text, tmp_path / "r", preset=AS_OPENCV, engine=InlineEngine())
+    [row] = found.table().to_dicts()
     before, after = both(pair, graf, text)
     assert all(len(b) > len(a) for b, a in zip(before, after, strict=True))
     matcher = make_matcher(opencv_methods(), "BF", "HAM")
