@@ -13,8 +13,7 @@ from aerocues.errors import AerocuesError, ImageError
 from aerocues.methods.combination import Combination
 from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
-from aerocues.reconstruction.linked_scene import Links
-from aerocues.reconstruction.matching import Matching
+from aerocues.reconstruction.matching import Links, Matching
 from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from aerocues.methods.combination import Combination
 from aerocues.reconstruction.combination_model import CombinationModel
 from aerocues.reconstruction.database import verified_matches
 from aerocues.reconstruction.diagnosis import Outcome
@@ -15,13 +14,6 @@ from aerocues.reconstruction.matched_scene import MatchedScene, Names, PairMatch
 from aerocues.reconstruction.one_model import DATABASE, Linked
 
 LINKED, VERIFIED = "linked.npz", "verified.npz"
-
-
-@dataclass(frozen=True)
-class Links:
-    """Work of a process: the links of a combination."""
-
-    combination: Combination
 
 
 class LinkMaker(CombinationModel):

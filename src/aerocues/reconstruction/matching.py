@@ -29,6 +29,13 @@ class Matching:
     combination: Combination
 
 
+@dataclass(frozen=True)
+class Links:
+    """Work of a process: features, matches and verified links of a combination."""
+
+    combination: Combination
+
+
 class SceneMatcher:
     """Detects, describes and matches a scene under one combination.
 

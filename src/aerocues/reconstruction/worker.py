@@ -20,8 +20,8 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     from aerocues.reconstruction.colmap import quiet
     from aerocues.reconstruction.combination_model import CombinationModel
     from aerocues.reconstruction.images import prepare_image
-    from aerocues.reconstruction.linked_scene import LinkMaker, Links
-    from aerocues.reconstruction.matching import Matching
+    from aerocues.reconstruction.linked_scene import LinkMaker
+    from aerocues.reconstruction.matching import Links, Matching
     from aerocues.results.reconstruction_schema import BASELINE
 
     scene = pipe.recv()
