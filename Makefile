@@ -58,7 +58,7 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 	$(PIP) $(INSTALL) --no-build-isolation -e .
 	@touch $@
 
-demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (2 to 3 minutes)
+demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (3 minutes)
 	$(BIN)/aerocues simulate --survey mini --size 700x466 -o $(DEMO_FLIGHT)
 	$(BIN)/aerocues run simulated:$(DEMO_FLIGHT) -o $(DEMO_RESULTS) --timing-pairs 2 --combinations "$(DEMO_COMBINATIONS)"
 	$(BIN)/aerocues reconstruct simulated:$(DEMO_FLIGHT) -o $(DEMO_MODELS) --from $(DEMO_RESULTS) --top 3

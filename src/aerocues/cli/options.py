@@ -111,6 +111,19 @@ EqualFootingOption = Annotated[
         "for thesis or --from.",
     ),
 ]
+RefineKeypointsOption = Annotated[
+    bool | None,
+    typer.Option(
+        "--refine-keypoints/--no-refine-keypoints",
+        help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
+    ),
+]
+FeaturesWidthOption = Annotated[
+    int | None,
+    typer.Option(
+        min=16, metavar="PIXELS", help="Find features in smaller images; the result stays large."
+    ),
+]
 PairsOption = Annotated[
     str | None,
     typer.Option(

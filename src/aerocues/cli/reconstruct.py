@@ -16,12 +16,14 @@ from aerocues.cli.options import (
     CombinationsOption,
     EqualFootingOption,
     EveryOption,
+    FeaturesWidthOption,
     MaxKeypointsOption,
     MaxWidthOption,
     MemoryLimitOption,
     NoPluginsOption,
     PairsOption,
     PluginOption,
+    RefineKeypointsOption,
     RetryFailedOption,
     SeedOption,
     SequencesOption,
@@ -93,19 +95,8 @@ def reconstruct(
         typer.Option(metavar="PIXELS", help="Focal length, in place of the one in EXIF."),
     ] = None,
     mapper: Annotated[Mapper, typer.Option(help="COLMAP mapper.")] = Mapper.INCREMENTAL,
-    refine_keypoints: Annotated[
-        bool | None,
-        typer.Option(
-            "--refine-keypoints/--no-refine-keypoints",
-            help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
-        ),
-    ] = None,
-    features_width: Annotated[
-        int | None,
-        typer.Option(
-            min=16, metavar="PIXELS", help="Find features in smaller images; models stay large."
-        ),
-    ] = None,
+    refine_keypoints: RefineKeypointsOption = None,
+    features_width: FeaturesWidthOption = None,
     equal_footing: EqualFootingOption = None,
     reference: Annotated[
         str | None,

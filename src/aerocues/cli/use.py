@@ -12,10 +12,12 @@ from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
     FeaturesOption,
+    FeaturesWidthOption,
     MaxWidthOption,
     MemoryLimitOption,
     PairsOption,
     PluginOption,
+    RefineKeypointsOption,
     SubsetOption,
 )
 from aerocues.defaults import STAGE_TIMEOUT
@@ -89,19 +91,8 @@ def use(
     ] = None,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
-    refine_keypoints: Annotated[
-        bool | None,
-        typer.Option(
-            "--refine-keypoints/--no-refine-keypoints",
-            help="Sharpen keypoints by comparing images; default: yes, but not for thesis.",
-        ),
-    ] = None,
-    features_width: Annotated[
-        int | None,
-        typer.Option(
-            min=16, metavar="PIXELS", help="Find features in smaller images; files stay large."
-        ),
-    ] = None,
+    refine_keypoints: RefineKeypointsOption = None,
+    features_width: FeaturesWidthOption = None,
     features: FeaturesOption = None,
     timeout: Annotated[
         str, typer.Option(metavar="TIME", help="CPU time limit of one stage, such as 30min.")
