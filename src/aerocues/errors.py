@@ -56,5 +56,9 @@ class ReconstructionError(AerocuesError):
     """A scene cannot be reconstructed as asked."""
 
 
+class FocalLengthError(ReconstructionError):
+    """Nothing tells the focal length of some images, and the mapper may not estimate it."""
+
+
 class SimulationError(AerocuesError):
     """A flight cannot be simulated as asked."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from aerocues.datasets.dataset import Dataset, Pair
-from aerocues.errors import ReconstructionError
+from aerocues.errors import FocalLengthError
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT
@@ -85,7 +85,7 @@ def build_final(
     store = open_results(found.folder, scene)
     try:
         models = reconstruct_scene(scene, names, folder, options, progress, store)
-    except ReconstructionError:  # no focal length is known, and the images do not determine one
+    except FocalLengthError:  # the images do not determine one either
         options = replace(options, protocol=replace(options.protocol, intrinsics="refine"))
         models = reconstruct_scene(scene, names, folder, options, progress, store)
     images = len(scene.images), len(dataset.images)

@@ -12,7 +12,7 @@ import cv2
 
 from aerocues.datasets.dataset import Dataset, Image, PinholeCamera, Pixels
 from aerocues.datasets.decoding import FileSource
-from aerocues.errors import ReconstructionError
+from aerocues.errors import FocalLengthError, ReconstructionError
 from aerocues.reconstruction.focal_lengths import exif_focal_length
 from aerocues.reconstruction.prepared import Prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
@@ -97,14 +97,14 @@ def require_focal_lengths(cameras: Sequence[CameraGroup], protocol: Reconstructi
 
     Raises
     ------
-    ReconstructionError
+    FocalLengthError
     """
     unknown = [name for group in cameras if not group.parameters for name in group.names]
     if unknown and not protocol.refined:
         total = sum(len(group.names) for group in cameras)
         known = sorted({round(group.parameters[0], 1) for group in cameras if group.parameters})
         others = f", and the others have {', '.join(map(str, known[:3]))} px" if known else ""
-        raise ReconstructionError(
+        raise FocalLengthError(
             f"the focal length of {len(unknown)} of {total} images is not known "
             f"({unknown[0]}, ...){others}; give `focal_length` in pixels, or let the mapper "
             'estimate it with `intrinsics="refine"`'
