@@ -35,6 +35,7 @@ from tests.waiting import wait_until
 run = functools.partial(running.run, timing="shared")
 FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
 MANY = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,BRISK-BRISK-HAM-BF,!*-BOOST-*"
+LIMITS: dict[str, Any] = {"timeout": 8, "memory_limit": 700 / 1024}
 pytestmark = pytest.mark.slow
 
 
@@ -165,10 +166,9 @@ def test_faults_are_recorded_as_by_the_local_engine(
     dataset = dataclasses.replace(faulty, pairs=faulty.pairs[:2])
     combinations = "SEGFAULT-ORB-HAM-BF,ORB-D_SLEEP-HAM-BF,FAIL-ORB-HAM-BF,ORB-ORB-HAM-*"
     with connected(cluster.address) as client:
-        engine = DaskEngine(client, timeout=2, memory_limit=700 / 1024)
+        engine = DaskEngine(client, **LIMITS)
         results = run(dataset, combinations, tmp_path / "dask", engine=engine)
-    limits: dict[str, Any] = {"workers": 1, "timeout": 2, "memory_limit": 700 / 1024}
-    local = run(dataset, combinations, tmp_path / "local", **limits)
+    local = run(dataset, combinations, tmp_path / "local", workers=1, **LIMITS)
     assert {"crashed", "timeout", "error", "ok"} <= set(local.table()["status"])
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
 

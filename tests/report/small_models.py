@@ -53,6 +53,7 @@ def small_models(methods: tuple[tuple[str, ...], ...], harmful: str) -> dict[str
         ],
         "values": {name: values for name, (_, _, values) in columns.items()},
         "reference": REFERENCE,
+        "baseline": None,
         "statuses": {"ok": "it held"},
         "made": {"mapper": "incremental", "pairing": harmful},
         "relations": {

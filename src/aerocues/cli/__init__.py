@@ -19,10 +19,13 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     import os
     import sys
 
-    from aerocues.cli.memory_limit import WATCHED, Watched, limit_of_memory
+    from aerocues.cli.memory_limit import LEAST, WATCHED, Watched, limit_of_memory, too_small
 
     words = sys.argv[1:] if arguments is None else arguments
     limit = limit_of_memory()
+    if limit is not None and limit < LEAST:
+        sys.stderr.write(f"error: {too_small(limit)}\n")
+        sys.exit(2)
     if limit is not None and WATCHED not in os.environ:
         sys.exit(Watched(words, limit).exit_code())
     from aerocues.cli.program import exit_code

@@ -16,6 +16,8 @@ from typing import IO
 
 WATCHED = "AEROCUES_WATCHED"
 """Set in the environment of the process that does the work."""
+LEAST = 3 * 10**9
+"""Bytes; with less, libraries fail to load now and then, or wait for threads that never start."""
 TOO_SMALL = 2
 INTERRUPTED = 128
 PATIENCE_SECONDS = 30
@@ -92,10 +94,15 @@ class Watched:
     def _reason(self, held: list[bytes], code: int) -> str:
         lines = [text for line in held if (text := line.decode(errors="replace").strip())]
         words = lines[-1] if code == 1 else lines[0] if lines else f"signal {-code}"
-        return (
-            f"the memory that this shell allows a process ({self._limit / 1e9:.1f} GB, see 'ulimit "
-            f"-v') is too small: {words[:LAST_WORDS]}; allow 4 GB or more, or 'ulimit -v unlimited'"
-        )
+        return too_small(self._limit, f": {words[:LAST_WORDS]}")
+
+
+def too_small(limit: int, why: str = "") -> str:
+    """What to do about a limit that does not suffice."""
+    return (
+        f"the memory that this shell allows a process ({limit / 1e9:.1f} GB, see 'ulimit -v') is "
+        f"too small{why}; allow 4 GB or more, or 'ulimit -v unlimited'"
+    )
 
 
 def _copied(stream: IO[bytes]) -> list[bytes]:

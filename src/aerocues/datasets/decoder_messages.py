@@ -5,15 +5,13 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from typing import TypeVar
 
-STANDARD_ERROR = 2
+from aerocues.standard_error import STANDARD_ERROR, standard_error_in
+
 _Result = TypeVar("_Result")
-# The descriptor belongs to the whole process.
-_lock = threading.Lock()
 _FROM_DECODERS = re.compile(
     rb"(Corrupt JPEG|Premature end|Inconsistent progression|Invalid SOS|Unsupported marker|libpng"
     rb"|Warning: unknown JFIF|\[ ?[A-Z]+:\d+@|> |where|$)"
@@ -25,18 +23,13 @@ def with_messages(decode: Callable[[], _Result]) -> tuple[_Result, bytes]:
 
     What is not of a decoder, such as a progress bar of another thread, is written afterwards.
     """
-    with _lock, ExitStack() as opened:
+    with ExitStack() as opened:
         try:
             file = opened.enter_context(tempfile.TemporaryFile())
-            before = os.dup(STANDARD_ERROR)
-        except OSError:  # no room for the file; or nobody can write there
+        except OSError:  # no room for it
             return decode(), b""
-        os.dup2(file.fileno(), STANDARD_ERROR)
-        try:
+        with standard_error_in(file):
             result = decode()
-        finally:
-            os.dup2(before, STANDARD_ERROR)
-            os.close(before)
         file.seek(0)
         written = file.read()
     _pass_on(written)

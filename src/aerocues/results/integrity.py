@@ -17,6 +17,7 @@ from typing import Any
 from aerocues.errors import DamageWarning, StoreError
 from aerocues.results.checksums import agrees_with_checksum
 from aerocues.results.expanded_size import why_not_decoded
+from aerocues.standard_error import standard_error_in
 
 THREADS = 4
 LONGEST_REASON = 120
@@ -130,18 +131,8 @@ def without_words_of_libraries() -> Iterator[None]:
     """Keep what polars prints when it panics on a damaged file from standard error."""
     if sys.stderr is not None:
         sys.stderr.flush()
-    try:
-        kept = os.dup(2)
-    except OSError:  # there is none
+    with Path(os.devnull).open("wb") as nowhere, standard_error_in(nowhere):
         yield
-        return
-    try:
-        with Path(os.devnull).open("wb") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def reason_of(error: BaseException) -> str:
