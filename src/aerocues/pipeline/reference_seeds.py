@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import cv2
@@ -26,6 +27,8 @@ from aerocues.pipeline.verification import estimate_fundamental_matrix, magsac_p
 SEED_METHODS = (("SIFT", "SIFT", "L2"), ("AKAZE", "AKAZE", "HAM"), ("GFTT", "DAISY", "L2"))
 LIMIT = KeypointLimit(3000)
 SEED = 0
+FEW_DISTANCES = 400_000
+"""OpenCV's brute force finds the same matches of so many sooner than compiled code is loaded."""
 
 CLOSE, CONFIDENCE = 1.5, 0.999
 ITERATIONS, SHUFFLED_ITERATIONS = 5000, 1000
@@ -67,8 +70,7 @@ class SeedMethods:
 
     def __init__(self) -> None:
         methods = LIMIT.limited(opencv_methods())
-        matcher = "BF" if why_not_exact() else "EXACT"
-        chosen = [Combination(*names, matcher) for names in SEED_METHODS]
+        chosen = [Combination(*names, "BF") for names in SEED_METHODS]
         self._kinds = [_Kind(c, methods) for c in chosen if not why_unavailable(c, methods)]
 
     def features(self, pixels: Pixels) -> tuple[Features, ...]:
@@ -110,6 +112,7 @@ class _Kind:
         self._detector = make_detector(methods, combination.detector)
         self._descriptor = make_descriptor(methods, combination.descriptor, combination.detector)
         self._matcher = make_matcher(methods, combination.matcher, combination.norm)
+        self._of_many = partial(make_matcher, methods, "EXACT", combination.norm)
 
     def features(self, pixels: Pixels) -> Features:
         cv2.setRNGSeed(SEED)
@@ -124,7 +127,9 @@ class _Kind:
     def matched(self, first: Features, second: Features) -> Seeds:
         if not len(first) or not len(second):
             return Seeds(first.keypoints.xy[:0], second.keypoints.xy[:0])
-        matches = self._matcher.read(self._matcher.call(first, second))
+        few = len(first) * len(second) <= FEW_DISTANCES or why_not_exact()
+        matcher = self._matcher if few else self._of_many()
+        matches = matcher.read(matcher.call(first, second))
         rows_1, rows_2 = matches.indices.T
         return Seeds(first.keypoints.xy[rows_1], second.keypoints.xy[rows_2])
 
