@@ -10,6 +10,7 @@ FIND_PYTHON = for name in python3 python3.13 python3.12 python3.11; do \
 	if "$$name" -c '$(SUPPORTED)' 2>/dev/null; then echo "$$name"; break; fi; done
 
 DEMO_FLIGHT := demo-flight
+DEMO_SIZE := 700x466
 DEMO_RESULTS := demo-results
 DEMO_MODELS := demo-models
 DEMO_REPORT := demo-report.html
@@ -59,7 +60,7 @@ $(INSTALLED): requirements.lock pyproject.toml | $(BIN)/python
 	@touch $@
 
 demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of six images (3 minutes)
-	$(BIN)/aerocues simulate --survey mini --size 700x466 -o $(DEMO_FLIGHT)
+	$(BIN)/aerocues simulate --survey mini --size $(DEMO_SIZE) -o $(DEMO_FLIGHT)
 	$(BIN)/aerocues run simulated:$(DEMO_FLIGHT) -o $(DEMO_RESULTS) --timing-pairs 2 --combinations "$(DEMO_COMBINATIONS)"
 	$(BIN)/aerocues reconstruct simulated:$(DEMO_FLIGHT) -o $(DEMO_MODELS) --from $(DEMO_RESULTS) --top 3
 	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)

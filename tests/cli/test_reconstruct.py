@@ -127,6 +127,7 @@ def test_the_path_is_told_before_missing_combinations(tmp_path: Path, call: Call
     assert str(tmp_path / "nosuch") in answer.err
 
 
+@pytest.mark.slow
 def test_models_that_all_fail(tmp_path: Path, call: Call) -> None:
     from PIL import Image
 

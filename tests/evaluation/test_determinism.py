@@ -55,6 +55,7 @@ def test_workers_and_order_do_not_change_a_row(dataset: Dataset, tmp_path: Path)
     assert_same_rows(without_crashes(two, one), without_crashes(one, two))
 
 
+@pytest.mark.slow
 def test_a_combination_alone_gives_the_rows_that_it_gives_among_others(
     views: Dataset, tmp_path: Path
 ) -> None:

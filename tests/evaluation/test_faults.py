@@ -126,6 +126,7 @@ def test_several_faults_in_one_run(arena: Arena) -> None:
     assert_only_the_guilty_failed(arena.run(combinations), healthy, several)
 
 
+@pytest.mark.slow
 def test_a_crash_costs_only_its_pair(arena: Arena) -> None:
     dataset = replace(arena.dataset, pairs=arena.dataset.pairs[:2])
     small = replace(arena, dataset=dataset)

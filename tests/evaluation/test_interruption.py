@@ -125,6 +125,7 @@ def closed_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", "-l", str(folder)], check=False)
 
 
+@pytest.mark.slow
 def test_a_full_disk_keeps_what_was_finished(tmp_path: Path, small_disk: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(4))
     combinations = "ORB-ORB-HAM-*,ORB-BRIEF-HAM-BF,FAST-ORB-HAM-BF"
@@ -163,6 +164,7 @@ def test_a_folder_of_the_system_is_an_error(tmp_path: Path) -> None:
         run(dataset, "ORB-ORB-HAM-BF", "/proc/aerocues", engine=InlineEngine())
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_resumes_where_it_was(tmp_path: Path) -> None:
     """An engine that stops half-way, as Ctrl-C would: finished units stay."""
     write_dataset(tmp_path / "images", strip(4))

@@ -80,6 +80,7 @@ def test_the_sample_is_spread_over_sequences_and_grows(tmp_path: Path) -> None:
     assert len({passes(pairs, "exclusive", 4, seed)[1].pairs for seed in range(20)}) > 1
 
 
+@pytest.mark.slow
 def test_rows_say_where_their_times_come_from(tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(5))
     seen, engine = Passing(), InlineEngine()
@@ -95,6 +96,7 @@ def test_rows_say_where_their_times_come_from(tmp_path: Path) -> None:
     assert_same_rows(rows_of(table), rows_of(shared.table()))
 
 
+@pytest.mark.slow
 def test_what_is_finished_is_not_timed_again_and_a_larger_sample_goes_on(tmp_path: Path) -> None:
     dataset = write_dataset(tmp_path / "images", strip(5))
     engine = InlineEngine()
@@ -118,6 +120,7 @@ def stop_before_timing(event: Event) -> None:
         raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 def test_a_run_that_ended_between_the_passes_has_rows_left_to_time(tmp_path: Path) -> None:
     dataset, engine = write_dataset(tmp_path / "images", strip(5)), InlineEngine()
     with pytest.raises(KeyboardInterrupt):

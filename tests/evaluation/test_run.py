@@ -109,6 +109,7 @@ def test_another_seed_gives_a_table_of_its_own(views: Dataset, tmp_path: Path) -
     assert back.table()["seed"].to_list() == [0, 0, 0]
 
 
+@pytest.mark.slow
 def test_images_without_content_end_in_a_status(tmp_path: Path) -> None:
     """Black, tiny, unrelated, truncated images and images of unequal size: a row each."""
     noise = np.random.default_rng(1).integers(0, 256, (2, 180, 240, 3)).astype(np.uint8)
@@ -182,6 +183,7 @@ def test_the_thesis_preset_does_not_ask_for_chance(tmp_path: Path) -> None:
     assert row["precision"] > 0
 
 
+@pytest.mark.slow
 def test_exclusive_times_say_so_and_know_the_memory(views: Dataset, tmp_path: Path) -> None:
     shared = run(views, FEW, tmp_path / "r", engine=InlineEngine(), timing="shared").table()
     assert shared["timing_repeats"].null_count() == 9
@@ -223,6 +225,7 @@ def test_every_stage_is_timed(views: Dataset, tmp_path: Path) -> None:
     assert first["total_seconds"] == pytest.approx(expected)
 
 
+@pytest.mark.slow
 def test_plug_ins_run_end_to_end(
     views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

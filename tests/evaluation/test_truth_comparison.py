@@ -15,6 +15,8 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ImageError
 from tests.reconstruction.scenes import write_scene
 
+pytestmark = pytest.mark.slow
+
 PAIRS = [("view_0.png", "view_1.png")]
 
 

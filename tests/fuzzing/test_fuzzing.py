@@ -47,7 +47,7 @@ class Kind:
     name: str
     content: Callable[[Path], bytes]
     read: Callable[[Path], object]
-    count: int = 400
+    count: int = 120
 
 
 def store_file(name: str) -> Callable[[Path], bytes]:

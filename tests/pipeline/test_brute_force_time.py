@@ -22,6 +22,7 @@ from tests.evaluation.scenes import assert_same_rows, rows_of
 COMBINATIONS = "ORB-ORB-HAM-BF,SIFT-SIFT-L2-BF,ORB-BRIEF-HAM-FLANN"
 
 
+@pytest.mark.slow
 def test_estimated_times_leave_everything_else_as_it_is(
     views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -57,6 +57,7 @@ def measure(dataset: Dataset, output: Path, features: Path | None, **options: An
     ).table()
 
 
+@pytest.mark.slow
 def test_another_run_finds_what_one_kept(
     views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,6 +76,7 @@ def test_another_run_finds_what_one_kept(
     assert files == {"ORB", "ORB-ORB", "ORB-BRIEF", "AKAZE", "AKAZE-SIFT", "AKAZE-AKAZE"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "taken"),
     [

@@ -17,6 +17,8 @@ from aerocues.pipeline.local_motion import jacobians, local_motion
 from aerocues.pipeline.patch_matching import as_gray, gaussian_weights, match_patches
 from aerocues.pipeline.refinement import RefinedKeypoints, refine_tracks
 
+pytestmark = pytest.mark.slow
+
 Floats = NDArray[np.float64]
 SIZE = (420, 300)
 NOISE = 0.8

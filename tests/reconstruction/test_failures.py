@@ -19,6 +19,8 @@ from tests.methods.distribution import write_distribution
 from tests.methods.pictures import textured
 from tests.reconstruction.scenes import Options, scene_of, write_scene
 
+pytestmark = pytest.mark.slow
+
 ORB = "ORB-ORB-HAM-BF"
 Picture = Callable[[int], np.ndarray]
 
@@ -75,7 +77,6 @@ def test_identical_images_have_no_angle_between_them(tmp_path: Path, quick: Opti
     assert "25 inliers and 4 degrees" in row["message"]
 
 
-@pytest.mark.slow
 def test_two_groups_that_do_not_meet_are_named(tmp_path: Path, quick: Options) -> None:
     one = write_scene(tmp_path / "one", [(0, 0), (9, 0), (0, 9), (9, 9)], truth=False)
     two = write_scene(tmp_path / "two", [(0, 0), (9, 0), (0, 9)], truth=False, seed=7)
@@ -104,7 +105,6 @@ def faulty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(tmp_path / "site")
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("faulty")
 def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
     landscape: Dataset, quick: Options, empty: Path
@@ -122,7 +122,6 @@ def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
     assert "describe ORB-DYING on view_0.png" in rows["DYING"]["message"]
 
 
-@pytest.mark.slow
 def test_a_stage_that_takes_too_long_is_ended(
     landscape: Dataset, quick: Options, empty: Path
 ) -> None:
@@ -153,7 +152,6 @@ def test_gray_images_leave_out_what_needs_colour(tmp_path: Path, quick: Options)
     assert row["descriptor"] == "ORB"
 
 
-@pytest.mark.slow
 def test_an_image_that_cannot_be_read_is_left_out(
     tmp_path: Path, empty: Path, quick: Options
 ) -> None:

@@ -20,6 +20,8 @@ from aerocues.reconstruction.models import Models
 from aerocues.results.metrics import Row
 from tests.reconstruction.scenes import Options, scene_of
 
+pytestmark = pytest.mark.slow
+
 SIFT = "SIFT-SIFT-L2-FLANN"
 MODEL = ["cameras.bin", "frames.bin", "images.bin", "points3D.bin", "rigs.bin"]
 
@@ -104,7 +106,6 @@ def test_colmap_itself_reads_the_model(models: Models) -> None:
     assert f"Points: {row_of(models, SIFT)['points_3d']}" in told.stdout + told.stderr
 
 
-@pytest.mark.slow
 def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     models: Models, landscape: Dataset, quick: Options, empty: Path
 ) -> None:
@@ -136,7 +137,6 @@ def test_the_same_again_gives_the_same_model_and_redoes_nothing(
     assert row_of(changed, SIFT)["position_rmse"] < 0.2
 
 
-@pytest.mark.slow
 def test_a_damaged_database_or_file_of_matches_does_no_harm(
     models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
@@ -153,7 +153,6 @@ def test_a_damaged_database_or_file_of_matches_does_no_harm(
     assert mine == (models.path(SIFT) / "sparse" / "0" / "points3D.bin").read_bytes()
 
 
-@pytest.mark.slow
 def test_refined_intrinsics_and_undistorted_images(
     landscape: Dataset, quick: Options, empty: Path
 ) -> None:
@@ -205,7 +204,6 @@ def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> 
         Models(empty)
 
 
-@pytest.mark.slow
 def test_a_failure_leaves_nothing_of_an_earlier_model(
     models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
@@ -234,7 +232,6 @@ def test_files_that_are_gone_are_made_again(
     assert again.cloud(SIFT) is not None
 
 
-@pytest.mark.slow
 def test_other_truth_or_other_names_are_another_scene(
     models: Models, landscape: Dataset, quick: Options, tmp_path: Path
 ) -> None:
@@ -263,7 +260,6 @@ def test_other_truth_or_other_names_are_another_scene(
     assert row_of(again, SIFT)["status"] == "ok"
 
 
-@pytest.mark.slow
 def test_a_pair_in_both_orders_is_matched_once(
     landscape: Dataset, quick: Options, empty: Path
 ) -> None:

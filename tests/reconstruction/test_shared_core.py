@@ -5,12 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import polars as pl
+import pytest
 
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.methods.presets import Preset
 from aerocues.reconstruction.models import Models
 from tests.reconstruction.scenes import Options
+
+pytestmark = pytest.mark.slow
 
 
 def test_the_thresholds_of_a_preset_decide_the_model(

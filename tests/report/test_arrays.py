@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from aerocues.report.arrays import packed_bytes, packed_floats, plain
 from tests.report.decoding import floats, numbers
 
 
+@settings(max_examples=30)
 @given(arrays.arrays(np.float32, arrays.array_shapes(max_dims=3, max_side=5)))
 def test_floats_come_back_bit_for_bit(values: NDArray[np.float32]) -> None:
     np.testing.assert_array_equal(floats(packed_floats(values), *values.shape), values)

@@ -22,6 +22,8 @@ from aerocues.simulation.georeference import ORIGIN, geodetic
 from aerocues.simulation.metadata import gimbal_angles, write_image
 from aerocues.simulation.surveys import Shot, Survey
 
+pytestmark = pytest.mark.slow
+
 SURVEY = Survey(
     "short",
     (
@@ -96,7 +98,6 @@ def test_consecutive_pairs_stay_within_a_view_and_subsets_are_chosen_by_folder(
         open_dataset("synthetic", subset="a")
 
 
-@pytest.mark.slow
 def test_a_part_of_a_survey_is_as_it_is_in_the_whole(tmp_path: Path) -> None:
     small = replace(SETTINGS, width=24, height=16)
     part, whole = tmp_path / "part", tmp_path / "whole"

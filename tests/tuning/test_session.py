@@ -155,6 +155,7 @@ def test_more_budget_goes_on_and_measures_what_time_was_lacking_for(
     assert_same(sit(photos, tmp_path / "race", Machine(memory), budget=ENOUGH), longer)
 
 
+@pytest.mark.slow
 def test_short_time_looks_at_fewer_pairs(
     photos: Path, tmp_path: Path, memory: dict[str, Row]
 ) -> None:

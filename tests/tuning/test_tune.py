@@ -83,6 +83,7 @@ def test_two_pairs_judge_nothing(call: Call, scenes: Path, tmp_path: Path) -> No
     assert json.loads(preset.read_text())["descriptors"] == {}
 
 
+@pytest.mark.slow
 def test_without_truth_thresholds_stay_and_large_grids_are_halved(
     call: Call, scenes: Path, tmp_path: Path
 ) -> None:
@@ -165,7 +166,7 @@ def test_thresholds_are_judged_by_the_truth(call: Call, shared_data: Path, tmp_p
     preset = tmp_path / "p.json"
     spec = f"oxford:{shared_data / 'oxford'}"
     answer = call(
-        "tune", "SIFT-SIFT-L2-BF", spec, "-o", preset, "--max-keypoints", 1000, "--max-pairs", 6
+        "tune", "SIFT-SIFT-L2-BF", spec, "-o", preset, "--max-keypoints", 500, "--max-pairs", 3
     )
     assert answer.code == 0, answer.err
     last = json.loads(preset.read_text())["made"]["searches"][-1]
