@@ -167,7 +167,7 @@ FACTORS = {
     "machine": "pi",
 }
 STEP = {"asked": "abc", "spent": 1.5, "kept": 0.5, "missing": ["key-1", "key-2"]}
-RACE = {"key": {"budget": 60.0, "begun": 2.0, "steps": [STEP, STEP]}}
+RACE = {"key": {"budget": 60.0, "begun": 2.0, "given": ["a"], "steps": [STEP, STEP]}}
 
 
 def read_pairs(file: Path) -> None:

@@ -149,3 +149,13 @@ def test_values_come_back_from_their_scales(seed: int, size: float) -> None:
     np.testing.assert_allclose(scales.shrink(scales.stretch(values)), values, rtol=1e-6)
     failed = scales.shrink(scales.stretch(np.full((1, 2), np.nan)))
     np.testing.assert_allclose(failed[0], [0.0, values[:, 1].max()], rtol=1e-6, atol=1e-12)
+
+
+def test_what_is_given_is_known_from_the_start() -> None:
+    place = made_up(pairs=4, blocks=2)
+    cells = [(a, p) for a in range(len(place.alternatives)) for p in range(4)]
+    known = made_up(pairs=4, blocks=2).measure(cells)
+    outcome = race(place, RaceSettings(budget=10 * place.total), given=known)
+    assert outcome.known.all()
+    assert (outcome.ended, len(outcome.rounds)) == ("measured", 1)
+    assert outcome.order[0] == int(np.nanargmax(full_scores(made_up(pairs=4, blocks=2))))

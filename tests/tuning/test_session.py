@@ -196,3 +196,11 @@ def test_a_journal_is_followed_as_long_as_the_same_is_asked_for(tmp_path: Path) 
     assert more_time.replay(["c", "d"], ["c"]) is None
     assert more_time.spent == 9.0
     assert Journal.read(tmp_path, "another", 10.0).spent == 0.0
+
+
+def test_a_journal_keeps_which_rows_were_there_when_it_began(tmp_path: Path) -> None:
+    journal = Journal.read(tmp_path, "race", 10.0, ["a", "b"])
+    journal.add(["c"], 3.0, 0.0, [])
+    assert Journal.read(tmp_path, "race", 10.0, ["a", "b", "c"]).given == {"a", "b"}
+    assert Journal.read(tmp_path, "race", 20.0, []).given == {"a", "b"}
+    assert Journal.read(tmp_path, "another", 10.0, ["a", "c"]).given == {"a", "c"}

@@ -34,7 +34,8 @@ def print_plan(arguments: dict[str, Any]) -> None:
     asked = named(methods, patterns, **kept)
     left_out = count_left_out(asked, frozenset(chosen), methods)
     dataset = arguments["dataset"]
-    images, pairs = count(len(dataset.images), "image"), count(len(dataset.pairs), "pair")
+    images = count(len(dataset.images), "image")
+    pairs = count(len({row.pair for row in plan.rows}), "pair")
     seconds = sum(unit.cost for _, each in turns for unit in each.units)
     lines = [
         f"dataset       {dataset.name}: {images}, {pairs}",

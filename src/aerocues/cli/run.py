@@ -135,8 +135,9 @@ def run(
 ) -> None:
     """Measure combinations on the image pairs of a dataset.
 
-    Each result is saved at once. After an interruption run the same command again: it continues,
-    and nothing is measured twice. The exit code is 1 if every row is an error.
+    Without --pairs, a flight or folder is surveyed: about 24 pairs stand for it and hold every
+    image. Each result is saved at once. After an interruption run the same command again: it
+    continues, and nothing is measured twice. The exit code is 1 if every row is an error.
     """
     from aerocues.cli.cluster import engine_on
     from aerocues.cli.console import tell_images

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from aerocues.arguments import check_choice, check_whole, seconds_of
 from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset
-from aerocues.defaults import CALL_TIMEOUT, TIMED_PAIRS
+from aerocues.defaults import CALL_TIMEOUT, RACE_PAIRS, TIMED_PAIRS
 from aerocues.errors import ArgumentError
 from aerocues.evaluation.context import make_context, run_facts
 from aerocues.evaluation.engine import Engine, Finished
@@ -25,6 +25,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import KeypointLimit, keypoint_limit
+from aerocues.pipeline.flight_pairs import survey_flight
 from aerocues.processes.limits import memory_mb, share_of_memory, worker_count
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
@@ -38,6 +39,10 @@ if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.evaluation.local_engine import LocalEngine
+
+
+FEWEST_SURVEYED = 5
+"""Fewer images are too short a flight to turn round; consecutive pairs show all there is."""
 
 
 def local_engine(
@@ -85,13 +90,15 @@ def run(
 ) -> Results:
     """Measure combinations on the pairs of a dataset.
 
-    Rows that are already in the results folder are not measured again. An interrupted run
-    continues.
+    Where nobody chose the pairs of a flight or folder of 5 images or more, it is surveyed: about 24
+    pairs then stand for it, and hold every image. Rows that are already in the results folder are
+    not measured again. An interrupted run continues.
 
     Parameters
     ----------
     dataset : Dataset, str, path or sequence of paths
-        From `aerocues.open_dataset`, or what that would be given.
+        From `aerocues.open_dataset`, or what that would be given; with ``pairs="consecutive"`` or
+        others that you choose there, it is not surveyed.
     combinations : str, Combination or iterable of both, optional
         Globs such as ``"ORB-*-HAM-BF,AKAZE-SIFT-*"`` or combinations; all meaningful ones by
         default.
@@ -153,9 +160,10 @@ def run(
         context = replace(context, features=checked_folder(Path(features).absolute()))
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(context.methods, combinations, **kept, everything=everything)
-    turns, told = asked.passes(opened), RunProgress(progress)
-    store = Store.create(Path(output))
-    context = replace(context, references=store.references)
+    store, told = Store.create(Path(output)), RunProgress(progress)
+    opened = asked.measured(opened, told, store)
+    context = replace(context, dataset=opened, references=store.references)
+    turns = asked.passes(opened)
     with store.writing():
         for number, turn in enumerate(turns):
             own = context.timed(turn.timing)
@@ -202,6 +210,21 @@ class _Asked:
         return make_context(
             dataset, self.parts, seed=self.seed, timing=self.timing, limit=self.limit
         )
+
+    def measured(
+        self, dataset: Dataset, told: RunProgress, store: Store | None, *, keep: bool = True
+    ) -> Dataset:
+        """A flight whose pairs nobody chose, with pairs that stand for it; others as they are.
+
+        The preset of the thesis keeps the consecutive pairs.
+        """
+        if not self.parts.chance_test or len(dataset.images) < FEWEST_SURVEYED:
+            return dataset
+        folder = store.surveys if store else None
+        flight = survey_flight(dataset, RACE_PAIRS, self.seed, told.surveyed, folder, keep=keep)
+        for note in flight.notes() if flight else ():
+            told.note(note)
+        return flight.dataset if flight else dataset
 
     def passes(self, dataset: Dataset) -> tuple[Pass, ...]:
         """The passes over the pairs."""
@@ -273,14 +296,14 @@ def plan_run(
 ) -> list[tuple[Timing, Plan]]:
     """What `run` would do with the same arguments, pass by pass; nothing is measured or written."""
     asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
-    context = asked.context(dataset)
+    context, silent = asked.context(dataset), RunProgress(None)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(context.methods, combinations, **kept, everything=everything)
     store = Store.open(Path(output)) if (Path(output) / RUN).is_file() else None
-    silent = RunProgress(None).read
+    context = replace(context, dataset=asked.measured(dataset, silent, store, keep=False))
     return [
-        (turn.timing, _plan(context, chosen, turn, store, silent, retry_failed=retry_failed))
-        for turn in asked.passes(dataset)
+        (turn.timing, _plan(context, chosen, turn, store, silent.read, retry_failed=retry_failed))
+        for turn in asked.passes(context.dataset)
     ]
 
 

@@ -21,10 +21,13 @@ class RunProgress:
     def __init__(self, progress: Progress | None) -> None:
         self._progress = progress
         self._reading = StageProgress(progress, "reading images", "images")
+        self._surveying = StageProgress(progress, "surveying the flight", "images and pairs")
         self._measuring = StageProgress(progress, "measuring", "rows")
         self._passes = 0
         self._cost_total = self._cost_done = 0.0
         self.read = self._reading.count
+        self.surveyed = self._surveying.count
+        self.note = self._surveying.say
 
     def set_aside(self, rows: int) -> None:
         """Report the number of rows of other settings, which are now ignored."""

@@ -33,9 +33,11 @@ RACE = "race.json"
 PLAN = "plan.parquet"
 REFERENCES = "references"
 """Where workers share references of pairs; it may be deleted, and is not packed."""
+SURVEYS = "surveys"
+"""What a quick look at the images of flights found; it may be deleted, and is not packed."""
 DAMAGED = "damaged"
 """Where damaged files are put, for whoever wants to look at them."""
-OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, REFERENCES, DAMAGED, LOCK)
+OWN = (PARTS, RUN, RACE, PLAN, RECONSTRUCTED, CLOUDS, REFERENCES, SURVEYS, DAMAGED, LOCK)
 LONGEST_LIST = 12
 
 
@@ -87,6 +89,11 @@ class Store(ReconstructionStore):
         """The folder of references, absolute; it need not exist."""
         return (self.folder / REFERENCES).absolute()
 
+    @property
+    def surveys(self) -> Path:
+        """The folder of surveys; it need not exist."""
+        return self.folder / SURVEYS
+
     @contextlib.contextmanager
     def writing(self) -> Iterator[None]:
         """Lock the folder against other runs, remove partial files, and put damaged ones aside.
@@ -120,7 +127,7 @@ class Store(ReconstructionStore):
         return cls(folder)
 
     def _remove_leftovers(self) -> None:
-        beside = (self._parts, self.folder, self.folder / CLOUDS, self.references)
+        beside = (self._parts, self.folder, self.folder / CLOUDS, self.references, self.surveys)
         for path in [path for folder in beside for path in folder.glob("*.tmp")]:
             path.unlink(missing_ok=True)
 

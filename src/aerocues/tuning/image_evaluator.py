@@ -71,6 +71,21 @@ class ImageEvaluator:
         """Wall seconds of the session, including those reserved for the end."""
         return self._session.spent
 
+    def given(self) -> dict[Cell, Array]:
+        """Values of the cells that were there when the race began, such as for other objectives."""
+        cells = {
+            (a, p): self._evaluator.row((pair, combination))
+            for a, combination in enumerate(self._combinations)
+            for p, pair in enumerate(self._pairs)
+        }
+        return self._values(
+            {
+                cell: row
+                for cell, row in cells.items()
+                if row is not None and row["row_key"] in self._session.given
+            }
+        )
+
     def measure(self, cells: Sequence[Cell], keep: float = 0.0) -> dict[Cell, Array]:
         """Values of the cells that were measured in time; see `CriteriaEvaluator`.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -53,6 +53,9 @@ class Journal:
     steps : list of Step
     begun : float
         Seconds spent, including interrupted and discarded steps.
+    given : frozenset of str
+        Keys of the rows that were there when the race began: an interrupted race knows no others
+        from the start.
     """
 
     path: Path
@@ -60,11 +63,14 @@ class Journal:
     budget: float
     steps: list[Step] = field(default_factory=list)
     begun: float = 0.0
+    given: frozenset[str] = frozenset()
     _replayed: int = field(default=0, init=False)
 
     @classmethod
-    def read(cls, folder: Path, key: str, budget: float) -> Journal:
-        """The journal of the race with this key; an empty one if there is none.
+    def read(
+        cls, folder: Path, key: str, budget: float, there: Iterable[str] = frozenset()
+    ) -> Journal:
+        """The journal of the race with this key; else an empty one that knows the rows there.
 
         With a larger budget than before, steps are kept only up to the first that lacked time: what
         it left out can be measured now.
@@ -72,14 +78,15 @@ class Journal:
         path = folder / RACE
         try:
             content = _races(path)[key]
-            journal = cls(path, key, budget, begun=float(content["begun"]))
+            given = frozenset(map(str, content["given"]))
+            journal = cls(path, key, budget, begun=float(content["begun"]), given=given)
             journal.steps = [_step(**step) for step in content["steps"]]
             if budget > float(content["budget"]):
                 complete = [not step.missing for step in journal.steps]
                 journal._cut(complete.index(False) if False in complete else len(complete))
         except (KeyError, TypeError, ValueError, AttributeError):
             # No journal, or a damaged one: the measurements are kept independently of it.
-            return cls(path, key, budget)
+            return cls(path, key, budget, given=frozenset(there))
         return journal
 
     @property
@@ -122,6 +129,7 @@ class Journal:
         own = {
             "budget": self.budget,
             "begun": self.begun,
+            "given": sorted(self.given),
             "steps": [asdict(step) for step in self.steps],
         }
         write_whole({self.path: json_content({**_races(self.path), self.key: own})})

@@ -84,6 +84,11 @@ class PairEvaluator:
         planned = self._planned.get(measurement)
         return None if planned is None else self._rows.get(planned.row_key)
 
+    @property
+    def there(self) -> frozenset[str]:
+        """Keys of the rows that were measured."""
+        return frozenset(self._rows)
+
     def row_key(self, measurement: Measurement) -> str:
         return self._planned[measurement].row_key
 

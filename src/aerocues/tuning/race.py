@@ -9,8 +9,9 @@ first (Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm identi
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -26,19 +27,16 @@ from aerocues.tuning.surrogate import Surrogate, fit
 from aerocues.tuning.valuation import Valuation, chances, interest_of
 
 Ended = Literal["budget", "sure", "measured"]
-# Users see the best five: what is likely to be among them is worth measuring, too. More would
-# spend time on combinations that nobody reads about.
+# Users see the best five: what is likely to be among them is worth measuring, too.
 FEW = 5
-# Blocks in the first measurements: more cover more scenes, but take longer before the race starts.
+# Blocks in the first measurements: more cover more scenes, but delay the race.
 _MOST_BLOCKS = 8
 # Pairs that a possible winner needs before the race may end early: measured values count as
-# certain, so that a single lucky pair looks like a sure win. More pairs make the end safer and
-# later.
+# certain, so that a single lucky pair looks like a sure win. More are safer and take longer.
 _FEWEST_PAIRS = 2
 _PAIRS_OF_WINNER = 5
-# Seconds to draw a table, per value and feature: a guess for a busy machine that the first round
-# replaces by its own time. Too high a guess ends a short race early, too low a one exceeds the
-# budget.
+# Seconds to draw a table, per value and feature, until the first round was timed. Too high a guess
+# ends a short race early, too low a one exceeds the budget.
 _DRAW_SECONDS = 1.6e-7
 # Seconds for everything else after the last measurement, such as the tables of the answer.
 _END_SECONDS = 1.0
@@ -101,7 +99,7 @@ class Round:
     leader : str
         Alternative with the highest expected score.
     probability : float
-        Share of the drawn tables in which the leader is the best.
+        Share of the drawn tables that it wins.
     """
 
     spent: float
@@ -147,8 +145,9 @@ def race(
     settings: RaceSettings,
     on_round: Callable[[Round], None] = lambda _: None,
     clock: Callable[[], float] = time.monotonic,
+    given: Mapping[Cell, Array] = MappingProxyType({}),
 ) -> RaceOutcome:
-    """Run a race; the same evaluator and seed give the same result.
+    """Run a race; the same evaluator, seed and given values give the same result.
 
     Parameters
     ----------
@@ -158,6 +157,8 @@ def race(
         Called with each finished round.
     clock : callable
         Returns seconds, to measure how long drawing takes.
+    given : mapping of Cell to (C,) float64
+        Values that are known from the start.
 
     Raises
     ------
@@ -166,7 +167,7 @@ def race(
     """
     if len(evaluator.alternatives) < 2 or not len(evaluator.blocks):
         raise ScoreError("a race needs at least two alternatives and one pair")
-    return _Race(evaluator, settings, on_round, clock).run()
+    return _Race(evaluator, settings, on_round, clock).run(given)
 
 
 class _Race:
@@ -189,7 +190,8 @@ class _Race:
         self._rounds: list[Round] = []
         self._draw_seconds = _DRAW_SECONDS * (self._values.size + self._features.size)
 
-    def run(self) -> RaceOutcome:
+    def run(self, given: Mapping[Cell, Array]) -> RaceOutcome:
+        self._learn(given)
         self._measure(self._one_per_kind(), self._settings.first_share * self._settings.budget)
         self._measure(self._cheapest_per_block())
         while True:
@@ -259,9 +261,11 @@ class _Race:
             if start and self._evaluator.spent >= limit:
                 return
             batch = cells[start : start + self._settings.batch]
-            for (alternative, pair), values in self._evaluator.measure(batch, self._keep()).items():
-                self._values[alternative, pair] = values
-                self._known[alternative, pair] = True
+            self._learn(self._evaluator.measure(batch, self._keep()))
+
+    def _learn(self, values: Mapping[Cell, Array]) -> None:
+        for cell, own in values.items():
+            self._values[cell], self._known[cell] = own, True
 
     def _keep(self) -> float:
         """Seconds to reserve for the end: the tables of the last round and of the last draws."""

@@ -19,6 +19,7 @@ from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.equal_footing import at_equal_footing
+from aerocues.pipeline.flight_pairs import survey_flight
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import Store
@@ -26,7 +27,6 @@ from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScorePreset
 from aerocues.tuning.device import Device
-from aerocues.tuning.flight_pairs import leaves_pairs_open, survey_flight
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
 from aerocues.tuning.pair_evaluator import PairEvaluator
@@ -104,9 +104,7 @@ def recommend_by_race(
     engine_here = local_engine("estimated", workers)
     store = Store.create(Path(output or f"{dataset.name}-race"))
     tell = RaceProgress(progress, seconds)
-    flight = None
-    if leaves_pairs_open(dataset):
-        flight = survey_flight(dataset, options.max_pairs, seed, tell.surveyed)
+    flight = survey_flight(dataset, options.max_pairs, seed, tell.surveyed, store.surveys)
     part = flight.dataset if flight else _spread(dataset, options.max_pairs, seed)
     pairs = part.pairs
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
@@ -118,7 +116,8 @@ def recommend_by_race(
     context = replace(context, references=store.references)
     with store.writing(), engine_here.standing(context) as engine:
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
-        journal = Journal.read(store.folder, _key(evaluators, chosen, options), seconds)
+        key, there = _key(evaluators, chosen, options), evaluators.race.there
+        journal = Journal.read(store.folder, key, seconds, there)
         session = Session(journal, began=began, watch=tell.watch)
         tell.looking(len(pairs))
         with engine_here.standing(evaluators.overlap.context) as other:
@@ -135,7 +134,8 @@ def recommend_by_race(
         )
         if flight:
             evaluator.classes = flight.classes_of(raced)
-        outcome = race(evaluator, options.settings(aim, scoring), tell.round)
+        settings = options.settings(aim, scoring)
+        outcome = race(evaluator, settings, tell.round, given=evaluator.given())
     return Recommendation(
         part,
         seen,

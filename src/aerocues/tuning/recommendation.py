@@ -11,10 +11,10 @@ from aerocues.methods.presets import Preset
 from aerocues.notebooks import as_html
 from aerocues.phrases import count, likelihood
 from aerocues.pipeline.equal_footing import Footing
+from aerocues.pipeline.flight_pairs import SurveyedFlight
 from aerocues.results.combination_columns import name_in_row
 from aerocues.scoring.objectives import Objective
 from aerocues.tuning.final import Final
-from aerocues.tuning.flight_pairs import SurveyedFlight
 from aerocues.tuning.race import RaceOutcome
 from aerocues.tuning.representative import Seen
 

@@ -48,6 +48,11 @@ class Session:
         self._journal, self._watch, self._clock = journal, watch, clock
         self._began = (clock() if began is None else began) - journal.spent
 
+    @property
+    def given(self) -> frozenset[str]:
+        """Keys of the rows that were there when the race began."""
+        return self._journal.given
+
     def measure(
         self,
         evaluator: PairEvaluator,

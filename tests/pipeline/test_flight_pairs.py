@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from aerocues.datasets.catalog import open_dataset
-from aerocues.tuning.flight_pairs import SurveyedFlight, leaves_pairs_open, survey_flight
+from aerocues.pipeline.flight_pairs import SurveyedFlight, leaves_pairs_open, survey_flight
 from tests.pipeline.test_survey import flight, made_up
 
 
@@ -49,3 +49,33 @@ def test_what_a_survey_warns_of(strips: Path) -> None:
     assert any(" of 24 images overlap with no other: 2, 4, 5, ..." in note for note in notes)
     assert any("1 of 24 images cannot be read: 3" in note for note in notes)
     assert np.array_equal(survey.partners()[:3], [1, 1, 0])
+
+
+def test_a_survey_is_made_once(strips: Path, tmp_path: Path) -> None:
+    looks: list[int] = []
+
+    def look(seed: int, *, keep: bool = True) -> SurveyedFlight:
+        looks.clear()
+        found = survey_flight(
+            open_dataset(strips),
+            4,
+            seed,
+            lambda done, total: looks.append(done),
+            tmp_path,
+            keep=keep,
+        )
+        assert found is not None
+        return found
+
+    look(0, keep=False)
+    assert not any(tmp_path.iterdir())
+    first = look(0)
+    assert looks
+    assert look(0).survey == first.survey
+    assert not looks
+    look(1)
+    assert looks
+    for file in tmp_path.iterdir():
+        file.write_text('{"images": 7}')
+    assert look(0).survey == first.survey
+    assert looks

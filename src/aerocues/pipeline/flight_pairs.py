@@ -1,9 +1,10 @@
-"""The pairs of a flight on which combinations race, chosen by a survey of its images."""
+"""The pairs that stand for a flight, chosen by a survey of its images."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from aerocues.pipeline.representative import (
     representatives,
 )
 from aerocues.pipeline.survey import Survey, Surveyor
+from aerocues.pipeline.survey_folder import read_survey, survey_key, write_survey
 
 FEWEST_IMAGES = 3
 """Two images are one pair: there is nothing to choose."""
@@ -88,7 +90,13 @@ def leaves_pairs_open(dataset: Dataset) -> bool:
 
 
 def survey_flight(
-    dataset: Dataset, most: int, seed: int, progress: Callable[[int, int], None]
+    dataset: Dataset,
+    most: int,
+    seed: int,
+    progress: Callable[[int, int], None],
+    folder: Path | None = None,
+    *,
+    keep: bool = True,
 ) -> SurveyedFlight | None:
     """A flight with representative pairs in place of the consecutive ones.
 
@@ -103,13 +111,19 @@ def survey_flight(
     seed : int
     progress : callable
         Called with how many images and pairs of how many were looked at.
+    folder : path, optional
+        Where surveys are kept; one that is there is not made again.
+    keep : bool
+        Whether a new survey is written there.
 
     Returns
     -------
     SurveyedFlight or None
-        None where no two images overlap: measuring then says why.
+        None where somebody chose the pairs, or no two images overlap: measuring then says why.
     """
-    survey = Surveyor(dataset.images, seed).survey(progress)
+    if not leaves_pairs_open(dataset):
+        return None
+    survey = _survey(dataset, seed, progress, folder, keep=keep)
     chosen = representatives(survey, enough_pairs(len(dataset.images), most), seed)
     if not chosen.pairs:
         return None
@@ -121,3 +135,22 @@ def survey_flight(
     others = tuple(each for each in dataset.settings if each[0] != "pairs")
     settings = (*others, ("pairs", f"representative:{len(pairs)}"))
     return SurveyedFlight(replace(dataset, pairs=pairs, settings=settings), survey, chosen)
+
+
+def _survey(
+    dataset: Dataset,
+    seed: int,
+    progress: Callable[[int, int], None],
+    folder: Path | None,
+    *,
+    keep: bool,
+) -> Survey:
+    if folder is None:
+        return Surveyor(dataset.images, seed).survey(progress)
+    key = survey_key(dataset.images, seed)
+    found = read_survey(folder, key)
+    if found is None:
+        found = Surveyor(dataset.images, seed).survey(progress)
+        if keep:
+            write_survey(folder, key, found)
+    return found
