@@ -11,15 +11,22 @@ from aerocues.cli.next_commands import AsMeasured
 from aerocues.defaults import FLIGHT_KEYPOINTS
 from aerocues.results.combination_columns import name_in_row
 from aerocues.results.model_quality import best_first
+from aerocues.results.reconstruction_schema import BASELINE
 
 if TYPE_CHECKING:
     from aerocues.reconstruction.models import Models
 
 
 def best_model(models: Models) -> str | None:
-    """The best successful combination of a folder; None if there is none."""
-    best = best_first(of_combinations(models.table())).head(1).to_dicts()
-    return name_in_row(best[0]) if best and best[0]["status"] == "ok" else None
+    """What made the best model of a folder, if only COLMAP's default; None if there is none.
+
+    Where combinations were asked for, one of them must have succeeded.
+    """
+    table = best_first(models.table())
+    others = of_combinations(table)
+    if "ok" not in (others if len(others) else table)["status"]:
+        return None
+    return name_in_row(table.row(0, named=True))
 
 
 def model_commands(
@@ -31,7 +38,7 @@ def model_commands(
     ----------
     models : Models
     best : str or None
-        The combination whose model goes on.
+        The combination whose model goes on, or COLMAP's default.
     asked : AsMeasured
         How the images were opened.
     results : path or None
@@ -65,4 +72,5 @@ def _towards_a_map(models: Models, best: str, asked: AsMeasured, results: Path |
     use = ["aerocues", "use", best, *asked.words(FLIGHT_KEYPOINTS), "--as", "odm", "-o", output]
     use += [] if results is None else ["--from", str(results)]
     next_step = stereo if (place / UNDISTORTED).is_dir() else undistort
-    return [shlex.join(words) for words in (look, next_step, use)]
+    own = [] if best == str(BASELINE) else [use]  # its features are COLMAP's own
+    return [shlex.join(words) for words in (look, next_step, *own)]

@@ -72,9 +72,10 @@ def _number(value: float | None, form: str) -> str:
 def _notes(table: pl.DataFrame) -> list[str]:
     """COLMAP's default in comparison, why models failed, and the reference of distances."""
     lines = []
-    if "ok" not in of_combinations(table)["status"]:
+    others = of_combinations(table)
+    if len(others) and "ok" not in others["status"]:
         lines.append("no combination reconstructs the flight correctly")
-    if len(of_combinations(table)) < len(table):
+    if 0 < len(others) < len(table):
         lines.append(_compared(table))
     told: dict[str, list[str]] = {}
     for row in table.iter_rows(named=True):

@@ -76,7 +76,10 @@ class AsMeasured:
 
 
 def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
-    """Commands that continue from a recommendation; models only for scenes with depth."""
+    """Commands that continue from a recommendation; models only for scenes with depth.
+
+    The model is that of COLMAP's default where nothing beats it.
+    """
     few = ",".join(found.ranked["combination"].head(FEW))
     final = found.final.best_combination if found.final else None
     best = name_in_row(final) if final else found.leader
@@ -86,7 +89,13 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
         ["use", best, "--from", str(found.folder), "--as", "python"],
     ]
     if found.dataset.geometry == "epipolar":
-        words = ["-o", "models", *_one_scene(found), "--combinations", best]
+        words = [
+            "-o",
+            "models",
+            *_one_scene(found),
+            "--combinations",
+            found.best if final else best,
+        ]
         words += ["--from", str(found.folder)]
         commands.insert(0, ["reconstruct", *measured.words(FLIGHT_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]

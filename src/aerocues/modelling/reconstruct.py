@@ -24,6 +24,7 @@ from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.protocol import Intrinsics, Mapper, ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
 from aerocues.reconstruction.scene import Wanted
+from aerocues.reconstruction.scene_making import baseline_alone, beside_baseline
 from aerocues.results.measured_results import Results, as_results
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
@@ -68,7 +69,8 @@ def reconstruct(
         `results`, and matched with their neighbours by GPS, or where those are not known, with all
         others.
     combinations : str, Combination or iterable of both, optional
-        Globs such as ``"ORB-*-HAM-BF"``, or combinations.
+        Globs such as ``"ORB-*-HAM-BF"``, or combinations. ``"COLMAP-SIFT-L2-COLMAP"`` alone is
+        COLMAP's default alone.
     output : path
         Folder of models, made where it is missing: a folder a combination.
     results : Results or path, optional
@@ -137,6 +139,10 @@ def reconstruct(
         raise ReconstructionError(
             "there are no combinations; give some as `combinations`, or measured `results`"
         )
+    if not baseline and combinations is not None and baseline_alone(combinations):
+        raise ArgumentError(
+            "`combinations` names COLMAP's default alone; leave `baseline=False` out"
+        )
     if top is not None:
         check_whole("top", top, 1)
     measured = None if results is None else as_results(results)
@@ -180,10 +186,12 @@ def preset_at_equal_footing(
     progress: Progress | None,
 ) -> Preset:
     """The preset with thresholds that reach so many keypoints; see `at_equal_footing`."""
+    if baseline_alone(combinations):
+        return preset
     methods = installed_methods().with_preset(preset)
     told = StageProgress(progress, "setting thresholds", "detectors")
     changed, _ = at_equal_footing(
-        *(methods, preset, scene.images, select(methods, combinations)),
+        *(methods, preset, scene.images, select(methods, beside_baseline(combinations))),
         keypoint_limit(max_keypoints),
         seed=seed,
         progress=told.count,

@@ -139,6 +139,8 @@ class _Reconstruction:
         if not (self._options.baseline or self._calibrates()):
             return []
         if problem := baseline_problem():
+            if not self._chosen:
+                raise ReconstructionError(f"{problem}; update pycolmap, or choose combinations")
             self._tell.without_baseline(problem)
             return []
         return [BASELINE]

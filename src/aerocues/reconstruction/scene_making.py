@@ -22,6 +22,7 @@ from aerocues.reconstruction.prepared import read_prepared, write_prepared
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
 from aerocues.reconstruction.scene import FEATURES, Scene
+from aerocues.results.reconstruction_schema import BASELINE
 from aerocues.results.versions import machine_name, software_versions
 
 
@@ -99,8 +100,13 @@ def chosen_combinations(
     combinations: Patterns,
     tell: ReconstructionProgress,
 ) -> list[Combination]:
-    """The combinations in the order asked for, where each was named; else in that of the tables."""
-    patterns = split_names(combinations)
+    """The combinations in the order asked for, where each was named; else in that of the tables.
+
+    None where COLMAP's default alone is named: it is made beside all others.
+    """
+    if baseline_alone(combinations):
+        return []
+    patterns = beside_baseline(combinations)
     chosen = select(scene.methods, patterns)
     if not isinstance(combinations, str):
         place = {name: number for number, name in enumerate(patterns)}
@@ -118,6 +124,16 @@ def chosen_combinations(
             raise ReconstructionError(f"{reason}; choose other combinations")
         tell.left_out(needs_colour, reason)
     return chosen
+
+
+def beside_baseline(combinations: Patterns) -> list[str]:
+    """Patterns of combinations, one by one, without the name of COLMAP's default."""
+    return [name for name in split_names(combinations) if name != str(BASELINE)]
+
+
+def baseline_alone(combinations: Patterns) -> bool:
+    """Whether nothing but COLMAP's default is named."""
+    return bool(split_names(combinations)) and not beside_baseline(combinations)
 
 
 def told_unreadable(scene: Scene) -> str:

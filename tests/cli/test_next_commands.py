@@ -1,0 +1,27 @@
+"""What to type after a recommendation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from aerocues.cli.next_commands import AsMeasured, next_commands
+from aerocues.results.reconstruction_schema import BASELINE
+from tests.cli.test_recommendation import found
+from tests.tuning.test_final import SIFT, final, model
+
+
+def test_where_colmaps_default_wins_the_next_command_makes_its_model(photos: Path) -> None:
+    same = AsMeasured("photos", None, None, None, None, "none", 900, "default", 8000, 0)
+    recommended = found(photos, [0.7, 0.3])
+    sharper = model(BASELINE, reprojection_error=0.5)
+    won = replace(recommended, final=final(model(SIFT), sharper))
+    first, *others = next_commands(won, same)
+    assert first == (
+        f"aerocues reconstruct photos --max-width 900 -o models --combinations {BASELINE} "
+        f"--from {photos}"
+    )
+    assert f"aerocues use {SIFT} --from {photos} --as python" in others
+    lost = replace(recommended, final=final(model(SIFT), model(BASELINE, points_in_3_images=9)))
+    assert f" --combinations {SIFT} " in next_commands(lost, same)[0]
+    assert " --combinations A-X-HAM-BF " in next_commands(recommended, same)[0]
