@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.stats
 from numpy.typing import NDArray
 
 from aerocues.errors import ArgumentError
@@ -112,12 +113,22 @@ def anchored(seed: int, alternatives: int, repeats: int) -> DecisionTable:
     return table_of(np.concatenate([draw.clip(0.01, 0.99), ends]))
 
 
-def test_intervals_hold_the_truth_as_often_as_they_should() -> None:
-    scores = score(anchored(0, 1500, 40), ScoreSettings(alpha=1))
+@pytest.mark.parametrize("repeats", [6, 40])
+def test_intervals_hold_the_truth_as_often_as_they_should(repeats: int) -> None:
+    scores = score(anchored(0, 1500, repeats), ScoreSettings(alpha=1))
     low, high = bootstrap(scores, 400).score_interval()
     covered = ((low <= 0.5) & (high >= 0.5))[:-2].mean()
-    # A percentile interval of 40 values holds a little less than 95 %.
-    assert 0.90 <= covered <= 0.965
+    assert 0.93 <= covered <= 0.97
+
+
+def test_the_interval_of_a_mean_is_that_of_student() -> None:
+    table = anchored(1, 20, 6)
+    low, high = bootstrap(score(table, ScoreSettings(alpha=1)), 4000).score_interval()
+    values = table.values[:-2, :, 0]
+    error = scipy.stats.sem(values, axis=1)
+    expected = scipy.stats.t.interval(0.95, 5, values.mean(axis=1), error)
+    np.testing.assert_allclose(low[:-2], np.maximum(expected[0], 0), atol=0.01)
+    np.testing.assert_allclose(high[:-2], np.minimum(expected[1], 1), atol=0.01)
 
 
 def test_the_standard_error_is_that_of_a_mean() -> None:

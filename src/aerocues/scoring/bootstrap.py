@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +25,8 @@ class Bootstrap:
 
     Attributes
     ----------
+    centre : (alternatives,) float64
+        Scores of the original table.
     scores, ranks : (resamples, alternatives) float64
         NaN where an alternative has no valid repeat in a resample.
     on_one_scale : (resamples, alternatives) float64
@@ -36,6 +39,7 @@ class Bootstrap:
         Number of units. With a single unit, intervals and probabilities are NaN.
     """
 
+    centre: Array
     scores: Array
     ranks: Array
     on_one_scale: Array
@@ -44,14 +48,38 @@ class Bootstrap:
     units: int
 
     def score_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Lower and upper bound, (alternatives,) each: percentile interval of the score."""
-        low, high = _interval(self.scores, confidence)
+        """Lower and upper bound, (alternatives,) each: Student's t interval of the score.
+
+        Percentiles of resamples of few repeats are too narrow, and cannot reach beyond the repeats.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # alternatives without a score
+            error = np.nanstd(self.scores, axis=0)
+        reach = self._quantile(confidence) * error
+        low, high = np.maximum(self.centre - reach, 0.0), np.minimum(self.centre + reach, 1.0)
         return self._where_known(low), self._where_known(high)
 
     def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Best and worst rank, (alternatives,) each: percentile interval of the rank."""
-        low, high = _interval(self.ranks, confidence)
+        """Best and worst rank, (alternatives,) each: expanded percentile interval of the rank.
+
+        Percentiles are taken as far out as Student's t interval of a mean reaches (T. Hesterberg,
+        "What teachers should know about the bootstrap", 2015).
+        """
+        from scipy.special import ndtr
+
+        low, high = _interval(self.ranks, float(ndtr(-self._quantile(confidence))))
         return self._where_known(np.floor(low)), self._where_known(np.ceil(high))
+
+    def _quantile(self, confidence: float) -> float:
+        """Of Student's t, for the standard deviation of resamples.
+
+        Their variance is that of a mean of `units`, times (units - 1) / units.
+        """
+        # scipy.stats.t has the same values, but takes most of a second to load.
+        from scipy.special import stdtrit
+
+        free = max(self.units - 1, 1)
+        return float(stdtrit(free, (1 + confidence) / 2) * np.sqrt((free + 1) / free))
 
     def probability_best(self) -> Array:
         """(alternatives,) share of the resamples in which each is the best; ties share it."""
@@ -103,6 +131,7 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     # Alternatives without a score in the table are excluded.
     values[:, np.isnan(scores.scores)] = np.nan
     return Bootstrap(
+        centre=scores.scores,
         scores=values,
         ranks=rank(values),
         on_one_scale=np.concatenate(on_one_scale),
@@ -112,8 +141,7 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     )
 
 
-def _interval(values: Array, confidence: float) -> tuple[Array, Array]:
-    tail = (1 - confidence) / 2
+def _interval(values: Array, tail: float) -> tuple[Array, Array]:
     ends = np.array([tail, 1 - tail])
     whole = ~np.isnan(values).any(axis=0)
     some = ~np.isnan(values).all(axis=0) & ~whole
