@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from aerocues.report.report import write_report
     from aerocues.results.importing import import_results
     from aerocues.results.measured_results import Results
-    from aerocues.scoring.across import ComparedResults
     from aerocues.scoring.assessment import compare, score, validate
+    from aerocues.scoring.compared import ComparedResults
     from aerocues.scoring.outcomes import Relations, relate_outcomes
     from aerocues.scoring.ranking import Ranking
     from aerocues.scoring.validation import Validation
@@ -67,7 +67,7 @@ _MODULES = {
     "validate": "scoring.assessment",
     "Validation": "scoring.validation",
     "compare": "scoring.assessment",
-    "ComparedResults": "scoring.across",
+    "ComparedResults": "scoring.compared",
     "relate_outcomes": "scoring.outcomes",
     "Relations": "scoring.outcomes",
     "reconstruct": "modelling.reconstruct",

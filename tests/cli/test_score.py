@@ -182,11 +182,12 @@ def test_machines_are_compared_by_their_times(call: Call, finished: Path, elsewh
     answer = call("compare", finished, elsewhere)
     assert answer.code == 0
     assert max(map(len, answer.out.splitlines())) <= 100
-    assert "best 4 of 4" in answer.out
+    assert "scored together: 4" in answer.out
     assert "slow board" in answer.out
     facts = json.loads(call("compare", finished, elsewhere, "--json").out)
-    (machines,) = facts["machines"]
-    by_stage = {row["stage"]: row for row in machines["times"]}
+    (runs,) = facts["runs"]
+    assert len(runs["differences"]) == 4
+    by_stage = {row["stage"]: row for row in runs["times"]}
     assert by_stage["match"]["ratio"] == pytest.approx(3)
     assert facts["shared"] == [[4, 4], [4, 4]]
     assert len(facts["versatility"]) == 4
@@ -207,12 +208,21 @@ def test_files_may_be_standard_output(call: Call, finished: Path, elsewhere: Pat
     assert len(pl.read_csv(printed.encode())) == 4
 
 
-@pytest.mark.parametrize("command", ["score", "validate"])
+def test_tables_for_papers(call: Call, finished: Path, elsewhere: Path) -> None:
+    printed = call("compare", finished, elsewhere, "--latex", "-").out
+    assert printed.count(r"\begin{tabular}") == 5
+    printed = call("validate", finished, "--markdown", "-").out
+    assert "**Power alpha: Spearman's correlation**" in printed
+    printed = call("validate", finished, "--csv", "-").out
+    assert pl.read_csv(printed.encode()).columns == ["table", "row", "column", "value"]
+
+
+@pytest.mark.parametrize("command", ["score", "validate", "compare"])
 def test_tables_keep_ranks_and_names_where_it_is_narrow(
-    call: Call, finished: Path, monkeypatch: pytest.MonkeyPatch, command: str
+    call: Call, finished: Path, elsewhere: Path, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
     monkeypatch.setattr("aerocues.cli.console.WIDTH_OF_FILES", 80)
-    answer = call(command, finished)
+    answer = call(command, finished, *([elsewhere] if command == "compare" else []))
     assert answer.code == 0
     assert max(map(len, answer.out.splitlines())) <= 80
     assert "…" not in answer.out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from scipy.stats import kendalltau, spearmanr
 
 from aerocues.errors import ScoreError
 from aerocues.scoring import score
-from aerocues.scoring.across import compare_datasets, compare_machines, entries_of
+from aerocues.scoring.across import compare_datasets, entries_of, machines_of
+from aerocues.scoring.compared import compare_entries
 from aerocues.scoring.comparison import compare
 from aerocues.scoring.cues import Scores
 from tests.scoring.measurements import Stored, row, rows
@@ -106,6 +108,7 @@ class InFolder(Stored):
             )
         )
         self.folder = Path(folder)
+        self.settings: dict[str, Any] = {}
 
 
 @pytest.mark.parametrize(
@@ -114,6 +117,14 @@ class InFolder(Stored):
         ([InFolder("r", dataset="x"), InFolder("s", dataset="y")], ["x", "y"]),
         ([InFolder("r"), InFolder("s", machine="board")], ["flight (desk)", "flight (board)"]),
         ([InFolder("r"), InFolder("s")], ["r", "s"]),
+        (
+            [InFolder("r", preset="default"), InFolder("s", preset="tuned")],
+            ["flight (default)", "flight (tuned)"],
+        ),
+        (
+            [InFolder("r", opencv_version="4.13.0"), InFolder("s", opencv_version="5.0.0")],
+            ["flight (OpenCV 4.13.0)", "flight (OpenCV 5.0.0)"],
+        ),
         ([InFolder("p/r"), InFolder("q/r")], ["1 flight", "2 flight"]),
         (
             [InFolder("r", machine=None), InFolder("s")],
@@ -138,7 +149,8 @@ def test_one_folder_may_hold_several_datasets() -> None:
     entries = entries_of([both])
     assert [entry.name for entry in entries] == ["flight", "other"]
     assert compare_datasets(entries).spearman()[0, 1] == pytest.approx(1)
-    assert compare_machines(entries) == []
+    assert machines_of(entries) == []
+    assert compare_entries(entries).runs == []
 
 
 def test_rankings_by_different_presets_are_not_compared() -> None:
@@ -151,14 +163,13 @@ def test_rankings_by_different_presets_are_not_compared() -> None:
 def test_the_same_data_set_on_two_machines_is_compared_by_times() -> None:
     slow = InFolder("s", machine="board", match_seconds=1.2, total_seconds=2.0)
     entries = entries_of([InFolder("r"), slow, InFolder("t", dataset="other")])
-    (found,) = compare_machines(entries)
+    compared = compare_entries(entries)
+    (found,) = compared.runs
     assert (found.first.machine, found.second.machine) == ("desk", "board")
     assert not isinstance(found.times, str)
     by_stage = {each["stage"]: each for each in found.times.to_dicts()}
     assert by_stage["match"]["ratio"] == pytest.approx(3)
     assert by_stage["total"]["ratio"] == pytest.approx(2)
     assert by_stage["detect"]["ratio"] == pytest.approx(1)
-    side_by_side = found.ranks()
-    assert side_by_side["first_rank"].to_list() == [1, 2, 3]
-    assert side_by_side["second_rank"].to_list() == [1, 2, 3]
-    assert side_by_side["combination"][0] == "KAZE-KAZE-L2-BF"
+    assert not compared.of_one_dataset
+    assert "mean_rank" in compared.frame().columns

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,20 @@ def write_table(table: pl.DataFrame, target: str, form: str, what: str = "row") 
     if form == "json":
         sys.stdout.buffer.write(b"\n")
     sys.stdout.buffer.flush()
+
+
+def write_tables(tables: Mapping[str, pl.DataFrame], target: str, form: str) -> None:
+    """Write titled tables to a file, or to standard output where that is called ``-``."""
+    from aerocues.phrases import count
+    from aerocues.results.export import tables_content, write_file
+
+    content = tables_content(tables, form)
+    if target == STANDARD_OUTPUT:
+        sys.stdout.buffer.write(content)
+        sys.stdout.buffer.flush()
+        return
+    write_file(Path(target), content)
+    sys.stderr.write(f"{count(len(tables), 'table')} written to {target}\n")
 
 
 def print_json(facts: Any) -> None:

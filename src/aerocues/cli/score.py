@@ -18,6 +18,7 @@ from aerocues.cli.scoring import (
     PresetOption,
     ReconstructionOption,
     SeedOption,
+    Test,
     WeightsOption,
 )
 from aerocues.defaults import RESAMPLES, TOP_K
@@ -34,13 +35,6 @@ class Interval(StrEnum):
 
     JOINT = "joint"
     PAIRWISE = "pairwise"
-
-
-class Test(StrEnum):
-    """Values of ``--test``."""
-
-    BOOTSTRAP = "bootstrap"
-    WILCOXON = "wilcoxon"
 
 
 def score(

@@ -19,6 +19,13 @@ class Failures(StrEnum):
     OMIT = "omit"
 
 
+class Test(StrEnum):
+    """Values of ``--test``."""
+
+    BOOTSTRAP = "bootstrap"
+    WILCOXON = "wilcoxon"
+
+
 PresetOption = Annotated[
     str | None,
     typer.Option(

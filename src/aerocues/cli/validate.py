@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from aerocues.cli.options import JsonOption, ResultsArgument
-from aerocues.cli.output import print_json
+from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_tables
 from aerocues.cli.scoring import (
     AggregationOption,
     AlphaOption,
@@ -22,6 +22,7 @@ from aerocues.cli.scoring import (
 
 if TYPE_CHECKING:
     from aerocues.scoring.cues import Scores
+    from aerocues.scoring.outcomes import Relations
     from aerocues.scoring.validation import Validation
 
 
@@ -44,6 +45,16 @@ def validate(
     seed: SeedOption = 0,
     top: Annotated[int, typer.Option(min=2, metavar="N", help="Length of the lists.")] = 10,
     as_json: JsonOption = False,
+    csv: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write all tables as one CSV, a row for each value."),
+    ] = None,
+    latex: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write all tables as LaTeX.")
+    ] = None,
+    markdown: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write all tables as Markdown.")
+    ] = None,
 ) -> None:
     """Show how robust the ranking is.
 
@@ -76,12 +87,29 @@ def validate(
         scores = score(measured.table, settings)
         found = examine(scores, speed=speed, quality=quality, shortlist=top, seed=seed)
         relations = found_relations(results, preset, measured.dataset)
+    targets = {"csv": csv, "latex": latex, "markdown": markdown}
+    _write(found, relations, targets, top)
+    if STANDARD_OUTPUT in targets.values():
+        return
     if as_json:
         print_json({**_facts(scores, found), "reconstruction": relation_facts(relations)})
         return
     print_validation(scores, found, measured, top)
     if len(results.reconstructions()):
         print_relations(relations)
+
+
+def _write(
+    found: Validation, relations: Relations | str, targets: dict[str, str | None], top: int
+) -> None:
+    if not any(targets.values()):
+        return
+    tables = found.tables(top)
+    if not isinstance(relations, str):
+        tables["Pairs and 3D models"] = relations.frame()
+    for form, target in targets.items():
+        if target is not None:
+            write_tables(tables, target, form)
 
 
 def _facts(scores: Scores, found: Validation) -> dict[str, Any]:

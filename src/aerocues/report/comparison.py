@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from aerocues.errors import ScoreError
-from aerocues.scoring.across import Entry, Machines, compare_datasets, compare_machines
+from aerocues.scoring.across import Entry, compare_datasets, machines_of, times_between
 from aerocues.scoring.comparison import Comparison
 from aerocues.scoring.cues import rank
 
@@ -53,30 +53,20 @@ def comparison_facts(entries: Sequence[Entry]) -> dict[str, Any] | None:
 def machine_facts(entries: Sequence[Entry]) -> list[dict[str, Any]]:
     """All pairs of entries with the same dataset on different machines."""
     facts = []
-    for first, second in _pairs_of_machines(entries):
+    for first, second in machines_of(entries):
         try:
-            facts.append(_machines(compare_machines([first, second])[0]))
+            rankings = compare_datasets([first, second])
         except ScoreError:
             # They share no combination.
             continue
+        times = times_between(first, second)
+        facts.append(
+            {
+                "first": first.name,
+                "second": second.name,
+                "spearman": rankings.spearman()[0, 1],
+                "kendall": rankings.kendall()[0, 1],
+                "times": {"unavailable": times} if isinstance(times, str) else times.to_dicts(),
+            }
+        )
     return facts
-
-
-def _pairs_of_machines(entries: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
-    return [
-        (first, second)
-        for position, first in enumerate(entries)
-        for second in entries[position + 1 :]
-        if first.dataset == second.dataset and first.machine != second.machine
-    ]
-
-
-def _machines(found: Machines) -> dict[str, Any]:
-    times = found.times
-    return {
-        "first": found.first.name,
-        "second": found.second.name,
-        "spearman": found.rankings.spearman()[0, 1],
-        "kendall": found.rankings.kendall()[0, 1],
-        "times": {"unavailable": times} if isinstance(times, str) else times.to_dicts(),
-    }

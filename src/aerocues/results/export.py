@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from aerocues.errors import StoreError
-from aerocues.results.typesetting import as_latex, as_markdown
+from aerocues.results.typesetting import (
+    as_latex,
+    as_markdown,
+    tables_as_latex,
+    tables_as_markdown,
+    tables_in_long_form,
+)
 from aerocues.results.whole_files import put_in_place
 
 if TYPE_CHECKING:
@@ -53,6 +59,14 @@ def table_content(table: pl.DataFrame, form: str) -> memoryview:
             f"this table cannot be written as {form.upper()}: {reason}; use {others}"
         ) from error
     return content.getbuffer()
+
+
+def tables_content(tables: Mapping[str, pl.DataFrame], form: str) -> bytes | memoryview:
+    """Several titled tables as the content of a file, as CSV in long form."""
+    if form == "csv":
+        return table_content(tables_in_long_form(tables), form)
+    texts = {"markdown": tables_as_markdown, "latex": tables_as_latex}
+    return texts[form](tables).encode()
 
 
 def export_table(table: pl.DataFrame, target: Path, form: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -56,6 +56,45 @@ def as_latex(table: pl.DataFrame) -> str:
             "",
         ]
     )
+
+
+def tables_as_markdown(tables: Mapping[str, pl.DataFrame]) -> str:
+    """Several tables, each under its title."""
+    return "\n".join(
+        f"**{_markdown_text(title)}**\n\n{as_markdown(table)}" for title, table in tables.items()
+    )
+
+
+def tables_as_latex(tables: Mapping[str, pl.DataFrame]) -> str:
+    """Several tables, each as a float with its title as the caption."""
+    return "\n".join(
+        "\n".join(
+            [
+                r"\begin{table}",
+                r"\centering",
+                rf"\caption{{{_latex_text(title)}}}",
+                f"{as_latex(table)}\\end{{table}}\n",
+            ]
+        )
+        for title, table in tables.items()
+    )
+
+
+def tables_in_long_form(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+    """Several tables as one: ``table, row, column, value``; the first column names the rows."""
+    import polars as pl
+
+    found = [
+        table.select(
+            pl.lit(title).alias("table"),
+            pl.col(table.columns[0]).cast(pl.String).alias("row"),
+            pl.lit(name).alias("column"),
+            pl.col(name).cast(pl.String).alias("value"),
+        )
+        for title, table in tables.items()
+        for name in table.columns[1:]
+    ]
+    return pl.concat(found)
 
 
 def plain_number(value: float | None) -> str:

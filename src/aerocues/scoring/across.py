@@ -1,21 +1,20 @@
-"""Compares results folders across datasets and across machines."""
+"""Results folders as entries that can be compared: each dataset as one machine measured it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from aerocues.errors import ScoreError
-from aerocues.notebooks import as_html
-from aerocues.phrases import count
 from aerocues.scoring.combinations import has_chance_test, suitable_preset
 from aerocues.scoring.comparison import Comparison, Over, compare
+from aerocues.scoring.conditions import CONDITIONS, conditions_of
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
-from aerocues.scoring.platforms import compare_times, device_factors
+from aerocues.scoring.platforms import compare_times
 from aerocues.scoring.settings import Names
 
 if TYPE_CHECKING:
@@ -33,6 +32,11 @@ class Stored(Measured, Protocol):
         """The folder, or the packed file."""
         ...
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Configuration, versions and machine of the latest run."""
+        ...
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -41,7 +45,7 @@ class Entry:
     Attributes
     ----------
     name : str
-        The dataset; with the machine or the folder if the dataset alone is ambiguous.
+        The dataset; with the condition that differs or the folder if that alone is ambiguous.
     dataset, machine : str
     rows : pl.DataFrame
     scores : Scores
@@ -50,6 +54,8 @@ class Entry:
         Whether it has reconstructions.
     source : int
         Index of the results that it comes from.
+    conditions : mapping of str to str
+        What it was measured under; see `conditions.CONDITIONS`.
     """
 
     name: str
@@ -60,102 +66,7 @@ class Entry:
     preset: str
     reconstructed: bool = False
     source: int = 0
-
-
-@dataclass(frozen=True)
-class Machines:
-    """The same dataset on two machines.
-
-    Attributes
-    ----------
-    first, second : Entry
-    rankings : Comparison
-        The two rankings.
-    times : pl.DataFrame or str
-        See `platforms.compare_times`; a text says why they cannot be compared.
-    """
-
-    first: Entry
-    second: Entry
-    rankings: Comparison
-    times: pl.DataFrame | str
-
-    def ranks(self) -> pl.DataFrame:
-        """Scores and ranks side by side, sorted by the rank on the first machine.
-
-        Returns
-        -------
-        pl.DataFrame
-            ``combination, first_rank, first_score, second_rank, second_score``.
-        """
-        import polars as pl
-
-        ranks = self.rankings.ranks()
-        columns = {"combination": self.rankings.alternatives}
-        for side, rank, score_ in zip(
-            ("first", "second"), ranks, self.rankings.scores, strict=True
-        ):
-            columns |= {f"{side}_rank": rank, f"{side}_score": score_}
-        return (
-            pl.DataFrame(columns, nan_to_null=True)
-            .with_columns(pl.col("first_rank", "second_rank").cast(pl.Int64))
-            .sort("first_rank", "second_rank", "combination", nulls_last=True)
-        )
-
-
-@dataclass(frozen=True)
-class ComparedResults:
-    """Rankings side by side, and the same data on two machines.
-
-    Attributes
-    ----------
-    entries : sequence of Entry
-        What was scored: each dataset as each machine measured it.
-    rankings : Comparison
-        Of all entries.
-    machines : sequence of Machines
-        Every two entries of one dataset.
-    """
-
-    entries: Sequence[Entry]
-    rankings: Comparison
-    machines: Sequence[Machines]
-
-    def __repr__(self) -> str:
-        names = ", ".join(entry.name for entry in self.entries)
-        return f"ComparedResults: {count(len(self.entries), 'ranking')}, {names}"
-
-    def _repr_html_(self) -> str:
-        return as_html(repr(self), self.frame())
-
-    def frame(self) -> pl.DataFrame:
-        """One row a combination, with its score and rank in each entry, the most versatile first.
-
-        Returns
-        -------
-        pl.DataFrame
-            ``combination``; ``mean, min, spread`` of the scores; ``mean_rank, worst_rank``; and
-            ``score_NAME, rank_NAME`` of each entry.
-        """
-        return self.rankings.versatility().rename({"alternative": "combination"})
-
-    def factors(self) -> dict[str, object]:
-        """How much longer each stage takes on the second machine: for ``recommend(device=)``.
-
-        Raises
-        ------
-        ScoreError
-            If these are not two entries of one dataset.
-        """
-        if len(self.entries) != 2 or self.entries[0].dataset != self.entries[1].dataset:
-            raise ScoreError("`factors` needs two results of the same dataset, from two machines")
-        here, there = self.entries
-        return {
-            "machine": there.machine,
-            "measured_on": here.machine,
-            "dataset": here.dataset,
-            "stages": device_factors(here.rows, there.rows),
-        }
+    conditions: Mapping[str, str] = field(default_factory=dict)
 
 
 def entries_of(
@@ -208,7 +119,8 @@ def entries_of(
         scores = score(measured.table, settings_from(measured.preset, **changes))
         known = dataset in models[source]["dataset"]
         name = measured.preset.name
-        entry = Entry(dataset, dataset, machine, rows, scores, name, known, source)
+        conditions = conditions_of(rows, results[source].settings)
+        entry = Entry(dataset, dataset, machine, rows, scores, name, known, source, conditions)
         found.append((results[source].folder, entry))
     presets = sorted({entry.preset for _, entry in found})
     if len(presets) > 1:
@@ -237,23 +149,23 @@ def _by_dataset_and_machine(
 
 def _with_names(found: Sequence[tuple[Path, Entry]]) -> list[Entry]:
     """The shortest names that are unique."""
-    for form in ("{dataset}", "{dataset} ({machine})", "{folder}", "{folder} {dataset}"):
-        names = [
-            form.format(dataset=entry.dataset, machine=entry.machine, folder=folder.name)
-            for folder, entry in found
-        ]
+    for names in _forms(found):
         if len(set(names)) == len(names):
-            break
-    else:
-        names = [f"{number + 1} {entry.dataset}" for number, (_, entry) in enumerate(found)]
-    return [replace(entry, name=name) for name, (_, entry) in zip(names, found, strict=True)]
+            return [replace(each, name=name) for name, (_, each) in zip(names, found, strict=True)]
+    return [
+        replace(entry, name=f"{number + 1} {entry.dataset}")
+        for number, (_, entry) in enumerate(found)
+    ]
 
 
-def compare_entries(entries: Sequence[Entry], over: Over = "pairwise") -> ComparedResults:
-    """Compare all entries, and those of one dataset on several machines."""
-    return ComparedResults(
-        entries, compare_datasets(entries, over), compare_machines(entries, over)
-    )
+def _forms(found: Sequence[tuple[Path, Entry]]) -> Iterator[list[str]]:
+    yield [entry.dataset for _, entry in found]
+    yield [f"{entry.dataset} ({entry.machine})" for _, entry in found]
+    for condition in CONDITIONS:
+        told = [condition.told(entry.conditions.get(condition.name, "?")) for _, entry in found]
+        yield [f"{entry.dataset} ({text})" for text, (_, entry) in zip(told, found, strict=True)]
+    yield [folder.name for folder, _ in found]
+    yield [f"{folder.name} {entry.dataset}" for folder, entry in found]
 
 
 def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Comparison:
@@ -262,19 +174,18 @@ def compare_datasets(entries: Sequence[Entry], over: Over = "pairwise") -> Compa
     return compare(rankings, over, [entry.dataset for entry in entries])
 
 
-def compare_machines(entries: Sequence[Entry], over: Over = "pairwise") -> list[Machines]:
-    """Compare all pairs of entries with the same dataset on different machines."""
+def times_between(first: Entry, second: Entry) -> pl.DataFrame | str:
+    """See `platforms.compare_times`; a text says why times cannot be compared."""
+    try:
+        return compare_times(first.rows, second.rows)
+    except ScoreError as error:
+        return str(error)
+
+
+def machines_of(entries: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
+    """All pairs of entries with the same dataset on different machines."""
     return [
-        _two_machines(first, second, over)
+        (first, second)
         for first, second in combinations(entries, 2)
         if first.dataset == second.dataset and first.machine != second.machine
     ]
-
-
-def _two_machines(first: Entry, second: Entry, over: Over) -> Machines:
-    rankings: Mapping[str, Scores] = {first.name: first.scores, second.name: second.scores}
-    try:
-        times: pl.DataFrame | str = compare_times(first.rows, second.rows)
-    except ScoreError as error:
-        times = str(error)
-    return Machines(first, second, compare(rankings, over), times)

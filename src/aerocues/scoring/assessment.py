@@ -8,7 +8,8 @@ from typing import get_args
 
 from aerocues.arguments import check_choice, check_whole
 from aerocues.defaults import RESAMPLES, SHORTLIST, TOP_K
-from aerocues.scoring.across import ComparedResults, Stored, compare_entries, entries_of
+from aerocues.scoring.across import Stored, entries_of
+from aerocues.scoring.compared import ComparedResults, compare_entries
 from aerocues.scoring.comparison import Over
 from aerocues.scoring.cues import score as scores_of
 from aerocues.scoring.measured import Measured, opened, settings_from, table_of
@@ -160,8 +161,13 @@ def compare(
     weights: Names | None = None,
     aggregation: str | None = None,
     over: Over = "pairwise",
+    test: str = "bootstrap",
+    seed: int = 0,
 ) -> ComparedResults:
-    """Compare rankings across datasets, and times across machines.
+    """Compare rankings across datasets, and runs over the same images.
+
+    Two runs over the same images, under two presets, versions or machines, are scored together,
+    with one normalisation, and every difference is tested.
 
     Parameters
     ----------
@@ -173,6 +179,10 @@ def compare(
         Whether to add the criteria of reconstruction, which all of the results then need.
     over : {"pairwise", "all"}
         Compare two rankings over the combinations scored in both, or in all.
+    test : {"bootstrap", "wilcoxon"}
+        Paired test of two runs over the same images.
+    seed : int
+        Of the resamples behind that test.
 
     Returns
     -------
@@ -194,4 +204,4 @@ def compare(
         weights=weights,
         aggregation=aggregation,
     )
-    return compare_entries(entries, over)
+    return compare_entries(entries, over, test=test, seed=seed)

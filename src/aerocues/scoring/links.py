@@ -53,6 +53,10 @@ class Links:
         """The links of some alternatives."""
         return replace(self, share=self.share[positions])
 
+    def with_repeats(self, positions: list[int]) -> Links:
+        """The links of some repeats."""
+        return replace(self, share=self.share[:, positions], classes=self.classes[positions])
+
     def factor(self, counts: Array) -> Array:
         """Product over the classes of the mean link, brought to at most 1.
 

@@ -14,6 +14,7 @@ from aerocues.scoring.cues import DIGITS, Scores
 from aerocues.scoring.per_repeat import scores_of_units
 
 Array = NDArray[np.float64]
+Positions = NDArray[np.int64]
 LEVEL = 0.05
 # With fewer common repeats, no test has enough power.
 FEWEST_UNITS = 5
@@ -51,55 +52,77 @@ class ComparisonsWithBest:
         return np.flatnonzero(missing)
 
 
-def _by_resampling(scores: Scores, resampled: Bootstrap) -> Array:
-    """Difference of the scores over its standard error among the resamples, Student's t.
+def paired_error(
+    scores: Scores, resampled: Bootstrap, first: Positions, second: Positions
+) -> tuple[NDArray[np.int64], Array]:
+    """Units that both alternatives of each pair have, and the standard error of their difference.
 
-    A percentile of 1000 resamples cannot be below 0.001, too coarse for a correction for hundreds
-    of comparisons; their standard error has no such limit. Bounds and weights are fixed: they
-    scale all differences alike and do not affect which alternative is better.
+    Bounds and weights are fixed: they scale all differences alike and do not affect which
+    alternative is better.
+
+    Returns
+    -------
+    shared : (pairs,) int64
+    error : (pairs,) float64
+        NaN with fewer than `FEWEST_UNITS` units in common.
     """
-    # scipy.stats.t has the same values, but takes most of a second to load.
-    from scipy.special import stdtr
-
-    # Rounded as for ranks, so that rounding errors do not break ties.
-    difference = np.abs(np.round(scores.scores[scores.best] - scores.scores, DIGITS))
     known = ~np.isnan(scores_of_units(scores))
-    shared = (known & known[scores.best]).sum(axis=1)
-    paired = resampled.on_one_scale[:, [scores.best]] - resampled.on_one_scale
+    shared = (known[first] & known[second]).sum(axis=1)
+    paired = resampled.on_one_scale[:, first] - resampled.on_one_scale[:, second]
     testable = (shared >= FEWEST_UNITS) & ~np.isnan(paired).all(axis=0)
     error = np.full(len(shared), np.nan)
     # The bootstrap's variance of a mean of n is too small by (n - 1) / n.
     error[testable] = np.nanstd(paired[:, testable], axis=0) * np.sqrt(
         shared[testable] / (shared[testable] - 1)
     )
+    return shared, error
+
+
+def _by_resampling(
+    scores: Scores, resampled: Bootstrap, first: Positions, second: Positions
+) -> Array:
+    """Difference of the scores over its standard error among the resamples, Student's t.
+
+    A percentile of 1000 resamples cannot be below 0.001, too coarse for a correction for hundreds
+    of comparisons; their standard error has no such limit.
+    """
+    # scipy.stats.t has the same values, but takes most of a second to load.
+    from scipy.special import stdtr
+
+    # Rounded as for ranks, so that rounding errors do not break ties.
+    difference = np.abs(np.round(scores.scores[first] - scores.scores[second], DIGITS))
+    shared, error = paired_error(scores, resampled, first, second)
     with np.errstate(divide="ignore", invalid="ignore"):
-        statistic = np.where(testable & (difference == 0), 0, difference / error)
+        statistic = np.where(~np.isnan(error) & (difference == 0), 0, difference / error)
     return np.asarray(2 * stdtr(np.maximum(shared - 1, 1), -statistic))
 
 
-def _by_signed_ranks(scores: Scores, _: Bootstrap) -> Array:
+def _by_signed_ranks(scores: Scores, _: Bootstrap, first: Positions, second: Positions) -> Array:
     """Wilcoxon's signed-rank test on the scores of single units (blocks or repeats).
 
-    If the other alternative is better unit by unit, its p-value is 1.
+    If the alternative with the lower score is better unit by unit, the p-value is 1.
     """
     from scipy.stats import wilcoxon
 
     values = scores_of_units(scores)
-    p_values = np.full(len(values), np.nan)
-    for position, row in enumerate(values):
-        both = ~np.isnan(row) & ~np.isnan(values[scores.best])
-        if np.isnan(scores.scores[position]) or both.sum() < FEWEST_UNITS:
+    p_values = np.full(len(first), np.nan)
+    for position, (one, other) in enumerate(zip(first, second, strict=True)):
+        difference = scores.scores[one] - scores.scores[other]
+        paired = (values[one] - values[other])[~np.isnan(values[one] + values[other])]
+        if np.isnan(difference) or len(paired) < FEWEST_UNITS:
             continue
-        paired = (values[scores.best] - row)[both]
+        if difference < 0:
+            paired = -paired
         in_favour = bool(np.any(paired)) and wilcoxon(paired, alternative="greater").pvalue < 0.5
         p_values[position] = wilcoxon(paired).pvalue if in_favour else 1.0
     return p_values
 
 
-TESTS: dict[str, Callable[[Scores, Bootstrap], Array]] = {
+TESTS: dict[str, Callable[[Scores, Bootstrap, Positions, Positions], Array]] = {
     "bootstrap": _by_resampling,
     "wilcoxon": _by_signed_ranks,
 }
+"""Two-sided p-values of the pairs of alternatives (first, second), not corrected."""
 
 
 def holm(p_values: Array) -> Array:
@@ -148,7 +171,8 @@ def compare_with_best(
     follow the differences, so that small p-values are too frequent.
     """
     check_choice("test", test, TESTS)
-    p_values = TESTS[test](scores, resampled)
+    others = np.arange(len(scores.scores))
+    p_values = TESTS[test](scores, resampled, np.full_like(others, scores.best), others)
     p_values[scores.best] = np.nan
     return ComparisonsWithBest(
         best=scores.best,

@@ -156,6 +156,18 @@ class DecisionTable:
             links=self.links.with_alternatives(positions) if self.links else None,
         )
 
+    def with_repeats(self, keep: Sequence[int]) -> DecisionTable:
+        """The table with only the repeats at these indices."""
+        positions = [int(position) for position in keep]
+        return replace(
+            self,
+            repeats=tuple(self.repeats[position] for position in positions),
+            values=self.values[:, positions],
+            failed=self.failed[:, positions],
+            blocks=self.blocks[positions],
+            links=self.links.with_repeats(positions) if self.links else None,
+        )
+
     @classmethod
     def from_values(
         cls,

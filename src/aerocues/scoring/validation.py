@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -80,6 +81,62 @@ class Validation:
             f"{', '.join(scores.table.criterion_names)}; {best} is the best under "
             f"{same} of {len(self.alpha.best)} powers alpha"
         )
+
+    def tables(self, top: int = SHORTLIST) -> dict[str, pl.DataFrame]:
+        """All tables by their titles, for a paper; lists of alternatives have `top` rows.
+
+        Returns
+        -------
+        dict of pl.DataFrame
+            The first column of each table names its rows.
+        """
+        import polars as pl
+
+        table = self.scores.table
+        found = {
+            "Power alpha: Spearman's correlation": _of_variants(self.alpha),
+            "Aggregation of the weights: Spearman's correlation": _of_variants(self.aggregation),
+            "Criteria left out: Spearman's correlation": _of_variants(self.criterion_left_out),
+        }
+        if not isinstance(self.agreement, str):
+            found["Other methods: Spearman's correlation"] = _of_variants(self.agreement)
+        found["Criteria: Pearson's correlation"] = correlation_frame(
+            table.criterion_names, self.criteria_correlation
+        )
+        found |= {f"Scores of {name}": frame.head(top) for name, frame in self.hierarchies.items()}
+        if self.pareto_criteria:
+            columns = [table.criterion_names.index(name) for name in self.pareto_criteria]
+            found["Pareto front"] = pl.DataFrame(
+                {
+                    "name": [table.alternatives[position] for position in self.pareto_front],
+                    **{
+                        name: self.scores.means[self.pareto_front, column]
+                        for name, column in zip(self.pareto_criteria, columns, strict=True)
+                    },
+                    "rank": self.scores.ranks[self.pareto_front],
+                }
+            )
+        if not isinstance(self.critical_difference, str):
+            each = self.critical_difference
+            found[f"Mean ranks (critical difference {each.critical_difference:.2f})"] = (
+                pl.DataFrame({"name": each.alternatives, "mean rank": each.mean_ranks})
+            )
+        return found
+
+
+def correlation_frame(names: Sequence[str], values: NDArray[np.float64]) -> pl.DataFrame:
+    """A matrix with the names of its rows in the first column; undefined values are null."""
+    import polars as pl
+
+    columns = dict(zip(names, np.asarray(values).T, strict=True))
+    return pl.DataFrame({"name": list(names), **columns}, nan_to_null=True)
+
+
+def _of_variants(found: Variants | Agreement) -> pl.DataFrame:
+    import polars as pl
+
+    frame = correlation_frame(found.names, found.correlation)
+    return frame.with_columns(pl.Series("the best", list(found.best)))
 
 
 def validate(

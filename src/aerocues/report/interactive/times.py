@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from aerocues.errors import ScoreError
 from aerocues.report.interactive.drawing import SYMBOLS, dots, framed, line
 from aerocues.report.interactive.view import Array, View, label_of
 from aerocues.report.relation_figures import STAGES
@@ -114,27 +113,27 @@ def machines(view: View) -> Figure | str:
     """Times on another machine over those on the first, by stage, with 90 % of the rows."""
     from plotly.graph_objects import Scatter
 
-    from aerocues.scoring.across import compare_machines
+    from aerocues.scoring.across import machines_of, times_between
 
-    try:
-        compared = compare_machines([found.entry for found in view.entries])
-    except ScoreError as error:
-        return str(error)
-    known = [(each, each.times) for each in compared if not isinstance(each.times, str)]
+    known = [
+        (first, second, times)
+        for first, second in machines_of([found.entry for found in view.entries])
+        if not isinstance(times := times_between(first, second), str)
+    ]
     if not known:
         return "no dataset was measured on two machines"
     traces = []
-    for number, (each, frame) in enumerate(known):
+    for number, (first, second, frame) in enumerate(known):
         ratio, low, high = (frame[name].to_numpy() for name in ("ratio", "ratio_low", "ratio_high"))
         traces.append(
             Scatter(
                 x=ratio,
                 y=frame["stage"].to_list(),
                 mode="markers",
-                name=f"{each.second.name} / {each.first.name}",
+                name=f"{second.name} / {first.name}",
                 error_x={"symmetric": False, "array": high - ratio, "arrayminus": ratio - low},
                 marker={"color": COLOURS[number % len(COLOURS)], "size": 9},
             )
         )
     axis = {"title": "time on the second machine / on the first", "type": "log"}
-    return framed("Between machines", traces, rows=len(known[0][1]), xaxis=axis)
+    return framed("Between machines", traces, rows=len(known[0][2]), xaxis=axis)
