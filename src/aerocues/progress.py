@@ -39,6 +39,8 @@ class Event:
         How things stand, in a line that takes the place of the one before; may be empty.
     workers : tuple of Activity
         What the workers are doing.
+    ends : float or None
+        When the time that was given is up, by `time.monotonic`; None where there is no limit.
     rows : tuple of dict
         What has just been finished and stored: rows of `Results.table`, or of `Models.table`.
     """
@@ -52,6 +54,7 @@ class Event:
     standing: str = ""
     workers: tuple[Activity, ...] = ()
     rows: tuple[Mapping[str, Any], ...] = ()
+    ends: float | None = None
 
     def __str__(self) -> str:
         counted = f"{self.done:,} of {self.total:,} {self.unit}" if self.total else ""
@@ -71,15 +74,22 @@ class StageProgress:
     ----------
     progress : callable or None
         Called with each event; None for nobody.
-    stage, unit, done, total
+    stage, unit, done, total, ends
         See `Event`.
     """
 
     def __init__(
-        self, progress: Progress | None, stage: str, unit: str = "", done: int = 0, total: int = 0
+        self,
+        progress: Progress | None,
+        stage: str,
+        unit: str = "",
+        done: int = 0,
+        total: int = 0,
+        *,
+        ends: float | None = None,
     ) -> None:
         self._progress = progress
-        self._event = Event(stage, unit, done, total)
+        self._event = Event(stage, unit, done, total, ends=ends)
 
     def tell(self, **changes: Any) -> None:
         """Tell what has changed; a message and rows belong to one event only."""

@@ -161,6 +161,33 @@ def test_plain_lines_tell_now_and_then_how_things_stand(capsys: pytest.CaptureFi
     ]
 
 
+def test_under_a_budget_a_line_comes_every_few_seconds(capsys: pytest.CaptureFixture[str]) -> None:
+    clock = Clock()
+    lines = PlainLines(clock=clock)
+    ends = clock.now + 130
+    stage = StageProgress(lines, "surveying the flight", "images and pairs", ends=ends)
+    stage.count(1, 40)
+    clock.now += 3
+    stage.count(7, 40)
+    clock.now += 1
+    lines.tick()
+    leads = "GFTT_H-TEBLID-HAM-FLANN leads (61%), 12 still in the race"
+    racing = StageProgress(lines, "racing", "measurements", ends=ends)
+    call = StageCall("match", 0, "1.png and 2.png", "ORB", "ORB", "ORB-ORB-HAM-BF", 5, 17)
+    clock.now += 5
+    racing.tell(standing=leads, workers=(Activity(0, call, 1.0),))
+    clock.now += 200
+    racing.tell(standing="racing", workers=(Activity(0, call, 1.0),))
+    printed = capsys.readouterr().err.splitlines()
+    assert printed == [
+        "surveying the flight: 1 of 40 images and pairs, 2 min 10 s left",
+        "surveying the flight: 7 of 40 images and pairs, 2 min 06 s left",
+        f"{leads}, 2 min 01 s left",
+        "racing, 0 s left; match pair 5 of 17, ORB-ORB-HAM-BF",
+    ]
+    assert max(map(len, printed)) <= 80
+
+
 def test_the_live_display_shows_workers_rows_and_failures() -> None:
     from rich.console import Console
 

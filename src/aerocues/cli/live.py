@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 # Drawing takes milliseconds of a core that a worker could use.
 SECONDS_BETWEEN_DRAWINGS = 0.5
+SECONDS_BETWEEN_TICKS = 1.0
 BAR_WIDTH = 30
 
 
@@ -37,8 +39,14 @@ class LiveDisplay(Tally):
             return
         if event.message and event.message != event.standing:  # stays above the display
             self.live.console.print(in_options(event.message), soft_wrap=True, markup=False)
+        self._draw(at_once=begins or bool(event.message))
+
+    def tick(self) -> None:
+        self._draw()
+
+    def _draw(self, *, at_once: bool = False) -> None:
         now = self.clock()
-        if begins or event.message or now - self._drawn >= SECONDS_BETWEEN_DRAWINGS:
+        if self.live and (at_once or now - self._drawn >= SECONDS_BETWEEN_DRAWINGS):
             self._drawn = now
             self.live.update(self.picture(), refresh=True)
 
@@ -54,12 +62,18 @@ class LiveDisplay(Tally):
         if self.statuses:
             lines.append(Text(f"so far    {self.outcomes()}", style="dim"))
         if event.standing or not event.total:
-            return Group(Text(event.standing or event.stage), *lines)
+            return Group(
+                Text(self.stands() if event.ends else event.standing or event.stage), *lines
+            )
         done = event.done / event.total
         bar_and_figures = Table.grid(padding=(0, 2))
         bar_and_figures.add_row(
             ProgressBar(total=1.0, completed=done, width=BAR_WIDTH),
-            Text(f"{event.stage}: {self.progress()}", no_wrap=True, overflow="ellipsis"),
+            Text(
+                self.stands() if event.ends else f"{event.stage}: {self.progress()}",
+                no_wrap=True,
+                overflow="ellipsis",
+            ),
         )
         return Group(bar_and_figures, *lines)
 
@@ -70,7 +84,7 @@ class LiveDisplay(Tally):
             if activity.waiting_for:
                 yield Text(waiting(activity), style="dim")
                 continue
-            what = str(activity.call) if activity.call else "between two calls"
+            what = activity.call.brief() if activity.call else "between two calls"
             seconds = spoken_seconds(activity.seconds) if activity.seconds >= 1 else ""
             yield Text.assemble(
                 (f"worker {activity.worker + 1}  ", "dim"),
@@ -96,12 +110,30 @@ def display() -> Iterator[Tally]:
 
     tally: Tally | None = None
     try:
-        with _suitable() as tally:
+        with _suitable() as tally, _ticking(tally):
             yield tally
     except Interrupted as interruption:
         kept = f"; {tally.kept()}" if tally and tally.kept() else ""
         sys.stderr.write(f"interrupted{kept}; run the same command again to continue\n")
         raise typer.Exit(interruption.exit_code) from None
+
+
+@contextlib.contextmanager
+def _ticking(tally: Tally) -> Iterator[None]:
+    """Let a display tell how things stand also while nothing happens."""
+    over = threading.Event()
+
+    def tick() -> None:
+        while not over.wait(SECONDS_BETWEEN_TICKS):
+            tally.tick()
+
+    thread = threading.Thread(target=tick, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 @contextlib.contextmanager

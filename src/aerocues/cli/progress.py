@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -15,6 +16,9 @@ from aerocues.progress import Activity, Event
 SECONDS_BETWEEN_LINES = 10.0
 SHARE_BETWEEN_LINES = 0.1
 LONGEST_SILENCE = 60.0
+# Whoever gave a budget watches it: how things stand is told at least every 5 seconds.
+SECONDS_UNDER_A_BUDGET = 4.0
+WIDTH = 80
 READING = "reading images"
 
 
@@ -85,13 +89,25 @@ class Tally:
 
     def progress(self) -> str:
         """``1,200 of 13,600 rows (9 %), 1 min 10 s so far, about 12 min 05 s left``."""
-        event, left = self.event, self.seconds_left()
+        event, left = self.event, None if self.event.ends else self.seconds_left()
         ending = f", {spoken_seconds(self.clock() - self._stage_began)} so far"
         ending += "" if left is None or left < 1 else f", about {spoken_seconds(left)} left"
         if not event.total:
             return f"{event.stage}{ending}"
         share = f"{int(100 * event.done / event.total)} %"
         return f"{event.done:,} of {event.total:,} {event.unit} ({share}){ending}"
+
+    def stands(self) -> str:
+        """How things stand, and what is left of the time that was given."""
+        event = self.event
+        if event.ends is None:
+            return event.standing or self.progress()
+        counted = f"{event.stage}: {event.done:,} of {event.total:,} {event.unit}"
+        told = event.standing or (counted if event.total else event.stage)
+        return f"{told}, {spoken_seconds(max(event.ends - self.clock(), 0.0))} left"
+
+    def tick(self) -> None:
+        """Called about every second, also while no event comes."""
 
     def outcomes(self) -> str:
         """``ok 1,100, chance 80, crashed 20``: of what this stage finished, ok first."""
@@ -114,19 +130,31 @@ class PlainLines(Tally):
     _line_share: float = 0.0
     _line_standing: str = ""
     _waits: bool = False
+    _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def __call__(self, event: Event) -> None:
-        begins = event.stage != self.event.stage
-        super().__call__(event)
-        if begins:
-            self._remember()
-        if event.message:
-            self._say(event.message)
-        elif event.stage != READING:
+        with self._lock:
+            begins = event.stage != self.event.stage
+            super().__call__(event)
+            if begins and event.ends is None:
+                self._remember()
+            if event.message:
+                self._say(event.message)
+            else:
+                self._say_now_and_then()
+
+    def tick(self) -> None:
+        with self._lock:
             self._say_now_and_then()
 
     def _say_now_and_then(self) -> None:
         event = self.event
+        if event.ends is not None:
+            if self.clock() - self._line_time >= SECONDS_UNDER_A_BUDGET:
+                self._say_briefly()
+            return
+        if event.stage == READING or self.began is None:
+            return
         told = [waiting(each) for each in event.workers if each.waiting_for]
         begins, self._waits = bool(told) and not self._waits, bool(told)
         moved = (
@@ -135,9 +163,19 @@ class PlainLines(Tally):
         )
         silent = self.clock() - self._line_time
         if begins or silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
-            calls = () if moved or told else (str(each.call) for each in event.workers if each.call)
+            calls = (
+                () if moved or told else (each.call.brief() for each in event.workers if each.call)
+            )
             stands = event.standing or self.progress()
             self._say("; ".join(filter(None, (*told, stands, self.outcomes(), *calls))))
+
+    def _say_briefly(self) -> None:
+        """How things stand, and what workers do as far as a line of 80 columns has room for it."""
+        line = self.stands()
+        for each in self.event.workers:
+            more = f"{line}; {each.call.brief()}" if each.call else line
+            line = more if len(more) <= WIDTH else line
+        self._say(line)
 
     def _share(self) -> float:
         return self.event.done / self.event.total if self.event.total else 0.0

@@ -27,6 +27,7 @@ from aerocues.cli.options import (
     TopOption,
     WorkersOption,
 )
+from aerocues.cli.serving import LiveOption
 from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ def recommend(
     report: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a report page.")
     ] = None,
+    live: LiveOption = False,
     combinations: CombinationsOption = None,
     preset: MethodPresetOption = "default",
     max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
@@ -116,8 +118,8 @@ def recommend(
     import aerocues
     from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
-    from aerocues.cli.live import display
     from aerocues.cli.next_commands import AsMeasured
+    from aerocues.cli.serving import display_and_page
 
     with interruptible():
         images = aerocues.open_dataset(
@@ -130,11 +132,12 @@ def recommend(
             every=every,
         )
         tell_images(images)
-        with display() as tally:
+        folder = output or Path(f"{images.name}-race")
+        with display_and_page(folder, live=live) as (_, progress):
             found = aerocues.recommend(
                 images,
                 combinations,
-                output,
+                folder,
                 budget=budget,
                 objective=objective.value,
                 final=final,
@@ -146,7 +149,7 @@ def recommend(
                 seed=seed,
                 workers=workers,
                 began=began,
-                progress=tally,
+                progress=progress,
             )
         _print(found, top, explain=explain)
         opened = (dataset, pairs, subset, band, every, equalize, _shrunk(images, max_width))

@@ -30,6 +30,7 @@ from aerocues.cli.options import (
     SubsetOption,
     WorkersOption,
 )
+from aerocues.cli.serving import LiveOption
 from aerocues.defaults import FLIGHT_KEYPOINTS, STAGE_TIMEOUT
 
 if TYPE_CHECKING:
@@ -63,6 +64,7 @@ def reconstruct(
             "-o", "--output", metavar="MODELS", help="Folder of the models, created or continued."
         ),
     ],
+    live: LiveOption = False,
     combinations: CombinationsOption = None,
     results: Annotated[
         Path | None,
@@ -143,7 +145,7 @@ def reconstruct(
     import aerocues
     from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
-    from aerocues.cli.live import display
+    from aerocues.cli.serving import display_and_page
     from aerocues.modelling.reconstruct import open_as_measured
 
     measured = None if results is None else aerocues.Results(results)
@@ -160,7 +162,7 @@ def reconstruct(
             every=every,
         )
         tell_images(scene)
-        with display() as tally:
+        with display_and_page(results or output, live=live) as (_, progress):
             models = aerocues.reconstruct(
                 scene,
                 combinations,
@@ -185,7 +187,7 @@ def reconstruct(
                 timeout=timeout,
                 memory_limit=memory_limit,
                 retry_failed=retry_failed,
-                progress=tally,
+                progress=progress,
             )
         asked = AsMeasured(
             images=dataset,

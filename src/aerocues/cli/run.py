@@ -34,6 +34,7 @@ from aerocues.cli.options import (
     TopOption,
     WorkersOption,
 )
+from aerocues.cli.serving import LiveOption
 from aerocues.defaults import CALL_TIMEOUT, TIMED_PAIRS
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ def run(
         Path,
         typer.Option("-o", "--output", metavar="DIR", help="Results folder, created or continued."),
     ],
+    live: LiveOption = False,
     combinations: CombinationsOption = None,
     detectors: DetectorsOption = None,
     descriptors: DescriptorsOption = None,
@@ -180,18 +182,18 @@ def run(
         limits = {"workers": workers, "timeout": timeout, "memory_limit": memory_limit}
         arguments |= {**limits, "features": features}
         with engine_on(scheduler, resource, limits, dask=engine is Engine.DASK) as chosen:
-            results = _measure({**arguments, "engine": chosen})
+            results = _measure({**arguments, "engine": chosen}, live=live)
         measured = _print_results(results, images.name, top)
     if not measured:
         raise typer.Exit(NOTHING_MEASURED)
 
 
-def _measure(arguments: dict[str, Any]) -> Results:
+def _measure(arguments: dict[str, Any], *, live: bool) -> Results:
     import aerocues
-    from aerocues.cli.live import display
+    from aerocues.cli.serving import display_and_page
 
-    with display() as tally:
-        results = aerocues.run(**arguments, progress=tally)
+    with display_and_page(arguments["output"], live=live) as (tally, progress):
+        results = aerocues.run(**arguments, progress=progress)
     sys.stderr.write(f"{_end(tally)}\n\n")
     return results
 

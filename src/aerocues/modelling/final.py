@@ -11,9 +11,10 @@ from aerocues.errors import FocalLengthError
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT
+from aerocues.phrases import likelihood
 from aerocues.pipeline.block import MOST_IMAGES, connected_block
 from aerocues.pipeline.survey import Survey
-from aerocues.progress import Progress
+from aerocues.progress import Event, Progress
 from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
@@ -81,6 +82,7 @@ def build_final(
         workers=workers,
         deadline=deadline,
     )
+    progress = _with_leader(progress, found, deadline)
     folder, names = found.folder / MODELS, [str(each) for each in asked]
     store = open_results(found.folder, scene)
     try:
@@ -91,6 +93,25 @@ def build_final(
     images = len(scene.images), len(dataset.images)
     final = Final.of_models(models.table(), asked, images, folder, found.objective)
     return final if final.rows else None
+
+
+def _with_leader(
+    progress: Progress | None, found: Recommendation, deadline: float
+) -> Progress | None:
+    """Tells beside the models who led the race, how likely, and when the time is up."""
+    if progress is None:
+        return None
+    outcome = found.outcome
+    leader = found.ranked["combination"][0]
+    chance = likelihood(float(outcome.probability[outcome.order[0]]))
+    tell = progress
+
+    def told(event: Event) -> None:
+        made = f"{event.done} of {event.total} {event.unit}" if event.total else event.stage
+        standing = f"{leader} led the race ({chance}); {made}"
+        tell(replace(event, ends=deadline, standing=standing))
+
+    return told
 
 
 def exactly_matched(combination: Combination) -> Combination:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import Announce, FeatureSource, TimedFeatures
 from aerocues.pipeline.features import StageError
 from aerocues.pipeline.pair_stages import PairStages
+from aerocues.processes.call import StageCall
 from aerocues.reconstruction.feature_size import at_full_size, smaller
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.reconstruction.scene import Scene
@@ -48,18 +49,28 @@ class SceneMatcher:
         clock = Clock(protocol.seed)
         self._scene = scene
         self._combination = combination
+        self._tell, self._place = announce, (0, 0)
         self._folder = FeatureFolder(scene.features, scene.methods, protocol, scene.machine)
         self._features = FeatureSource(
-            scene.methods, protocol, clock, folder=self._folder, announce=announce
+            scene.methods, protocol, clock, folder=self._folder, announce=self._announce
         )
-        self._stages = PairStages(scene.methods, protocol, scene.dataset.geometry, clock, announce)
+        self._stages = PairStages(
+            scene.methods, protocol, scene.dataset.geometry, clock, self._announce
+        )
         self._held: OrderedDict[str, Features] = OrderedDict()
+
+    def _announce(self, call: StageCall | None) -> None:
+        """Announce a call, and which image or pair of how many it is about."""
+        number, total = self._place
+        self._tell(replace(call, number=number, total=total) if call else None)
 
     def match(self) -> MatchedScene:
         """Features and matches; StageError where a method fails."""
         keypoints = {}
         seconds = 0.0
-        for image in self._scene.dataset.images:
+        images = self._scene.dataset.images
+        for number, image in enumerate(images, start=1):
+            self._place = number, len(images)
             found = self._timed_features(image.name)
             width = self._scene.protocol.features_width
             keypoints[image.name] = at_full_size(found.features.keypoints, image, width)
@@ -85,7 +96,9 @@ class SceneMatcher:
     def _match_pairs(self) -> tuple[dict[tuple[str, str], PairMatches], float]:
         pairs = {}
         seconds = 0.0
-        for pair in self._scene.dataset.pairs:
+        chosen = self._scene.dataset.pairs
+        for number, pair in enumerate(chosen, start=1):
+            self._place = number, len(chosen)
             features = self._held_features(pair.image_1), self._held_features(pair.image_2)
             matches = Matches()
             if all(len(each) for each in features):

@@ -6,8 +6,33 @@ from collections.abc import Sequence
 
 from aerocues.methods.combination import Combination
 from aerocues.phrases import count
+from aerocues.processes.call import StageCall
 from aerocues.progress import Activity, Progress, StageProgress
 from aerocues.results.metrics import Row
+
+# Where each stage of a model begins and ends, as shares of its time: rough, for the time left.
+SHARES = {
+    "detect": (0.0, 0.35),
+    "describe": (0.0, 0.35),
+    "match": (0.35, 0.6),
+    "verification": (0.6, 0.8),
+    "refinement": (0.65, 0.8),
+    "mapping": (0.8, 0.97),
+    "judging": (0.97, 1.0),
+}
+
+
+def share_of_model(call: StageCall | None) -> float:
+    """How much of its model a process has done, 0 to 1.
+
+    >>> share_of_model(StageCall("match", -1, "a and b", "ORB", number=9, total=17))
+    0.48
+    """
+    if call is None or call.stage not in SHARES:
+        return 0.0
+    begins, ends = SHARES[call.stage]
+    within = (call.number - 1) / call.total if call.total else 0.0
+    return round(begins + (ends - begins) * within, 2)
 
 
 class ReconstructionProgress:
@@ -23,6 +48,7 @@ class ReconstructionProgress:
         self._reading = StageProgress(progress, "reading images", "images")
         self._making = StageProgress(progress, "reconstructing", "models")
         self._done = self._total = self._present = 0
+        self._reached = 0.0
         self.read = self._reading.count
 
     def left_out(self, combinations: Sequence[Combination], reason: str) -> None:
@@ -37,8 +63,16 @@ class ReconstructionProgress:
         self._making.tell(done=present, total=total, message=there)
 
     def watch(self, activities: Sequence[Activity]) -> None:
-        """Report the activity of the processes."""
-        self._making.watch(activities)
+        """Report the activity of the processes, and how far all models are."""
+        begun = sum(share_of_model(each.call) for each in activities)
+        self._making.tell(workers=tuple(activities), share=self._share(begun))
+
+    def _share(self, begun: float = 0.0) -> float:
+        """Share of what was to do; it does not fall where a model takes another way."""
+        to_do = max(self._total - self._present, 1)
+        reached = min((self._done - self._present + begun) / to_do, 1.0)
+        self._reached = max(self._reached, reached)
+        return self._reached
 
     def finished(self, row: Row) -> None:
         """Report that a combination is finished and stored."""
@@ -46,7 +80,7 @@ class ReconstructionProgress:
         name = "-".join(str(row[part]) for part in ("detector", "descriptor", "norm", "matcher"))
         self._making.tell(
             done=self._done,
-            share=(self._done - self._present) / (self._total - self._present),
+            share=self._share(),
             message=f"{self._done} of {self._total}  {name}  {summary(row)}",
             rows=(row,),
         )

@@ -2,11 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 
 from aerocues.phrases import count, likelihood, spoken_seconds
 from aerocues.progress import Activity, Progress, StageProgress
 from aerocues.tuning.race import Round
+from aerocues.tuning.session import budget_too_small
+
+# Share of the budget that may be spent before the race: less than half would be left for it.
+LATEST = 0.6
+# Steps that tell the pace.
+FEWEST_DONE = 3
+
+
+class Pace:
+    """How long the rest of a stage takes, by its latest steps.
+
+    A new total means that steps of another kind begin: these have a pace of their own. The first
+    step also pays for what is loaded and compiled, so that it counts for nothing.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._total = self._first = 0
+        self._since = 0.0
+
+    def to_go(self, done: int, total: int) -> float:
+        """Seconds; 0 as long as too few steps tell."""
+        now = self._clock()
+        if total != self._total:
+            self._total, self._first, self._since = total, done, now
+        steps = done - self._first
+        return (now - self._since) / steps * (total - done) if steps >= FEWEST_DONE else 0.0
 
 
 class RaceProgress:
@@ -18,49 +46,78 @@ class RaceProgress:
         Called with each event.
     budget : float
         Seconds of the race.
+    began : float
+        From when on they count, by `clock`.
+    clock : callable
+        Returns seconds.
+    strict : bool
+        Whether a budget that will not do is refused; a race that has begun is only told again.
     """
 
-    def __init__(self, progress: Progress | None, budget: float) -> None:
+    def __init__(
+        self,
+        progress: Progress | None,
+        budget: float,
+        began: float,
+        clock: Callable[[], float] = time.monotonic,
+        *,
+        strict: bool = True,
+    ) -> None:
         self._progress, self._budget = progress, budget
-        self._stage = StageProgress(progress, "reading images", "images")
-        self._surveyed: StageProgress | None = None
-        self._reached: StageProgress | None = None
+        self._began, self._clock, self._strict = began, clock, strict
+        self._stage = self._of("reading images", "images")
         self.read = self._stage.count
+
+    def _of(self, stage: str, unit: str, total: int = 0) -> StageProgress:
+        ends = self._began + self._budget
+        return StageProgress(self._progress, stage, unit, total=total, ends=ends)
+
+    def resumed(self, spent: float) -> None:
+        """So many seconds were spent before an interruption."""
+        self._began -= spent
 
     def looking(self, pairs: int) -> None:
         """It is looked which of so many pairs show the same things."""
-        self._stage = StageProgress(self._progress, "comparing images", "pairs")
+        self._stage = self._of("comparing images", "pairs")
         what = f"looking which of {count(pairs, 'pair')} show the same things"
         self._stage.tell(message=what, standing=what)
 
-    def surveyed(self, done: int, total: int) -> None:
-        """So many images and pairs of a flight were looked at."""
-        if not done or self._surveyed is None:
-            self._surveyed = StageProgress(
-                self._progress, "surveying the flight", "images and pairs"
-            )
-        self._surveyed.count(done, total)
+    def preparing(self, stage: str, unit: str) -> Callable[[int, int], None]:
+        """Tells of a stage before the race how many are done.
 
-    def reached(self, done: int, total: int) -> None:
-        """The thresholds of so many detectors were set."""
-        if self._reached is None:
-            self._reached = StageProgress(self._progress, "setting thresholds", "detectors")
-        self._reached.count(done, total)
+        Raises
+        ------
+        SelectionError
+            From what it returns: as soon as the stage will not leave time for a race.
+        """
+        told, pace = self._of(stage, unit), Pace(self._clock)
+        told.tell(standing=stage)
+        self._refuse_late(stage, 0.0)
+
+        def step(done: int, total: int) -> None:
+            told.tell(done=done, total=total, standing="")
+            self._refuse_late(stage, pace.to_go(done, total))
+
+        return step
+
+    def _refuse_late(self, stage: str, to_go: float) -> None:
+        spent = self._clock() - self._began
+        if self._strict and (spent > LATEST * self._budget or spent + to_go > self._budget):
+            why = f"{stage} is not over before {spoken_seconds(spent + to_go)}"
+            raise budget_too_small(self._budget, spent + to_go, why)
 
     def racing(self, combinations: int, pairs: int) -> None:
         """The race begins."""
         total = combinations * pairs
-        self._stage = StageProgress(self._progress, "racing", "measurements", total=total)
+        self._stage = self._of("racing", "measurements", total)
         what = f"{count(combinations, 'combination')} race on {count(pairs, 'pair')}"
         self._stage.tell(message=what, standing=what)
 
     def round(self, finished: Round) -> None:
         """A round is over."""
         standing = (
-            f"{spoken_seconds(finished.spent)} of {spoken_seconds(self._budget)}: "
-            f"{count(finished.measured, 'measurement')}, {finished.leader} leads "
-            f"({likelihood(finished.probability)}), {finished.contenders} may still be among the "
-            "best"
+            f"{finished.leader} leads ({likelihood(finished.probability)}), "
+            f"{finished.contenders} still in the race"
         )
         share = min(finished.spent / self._budget, 1.0)
         self._stage.tell(done=finished.measured, share=share, standing=standing)

@@ -22,7 +22,7 @@ from aerocues.pipeline.equal_footing import at_equal_footing
 from aerocues.pipeline.flight_pairs import survey_flight
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
-from aerocues.results.store import Store
+from aerocues.results.store import RACE, Store
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScorePreset
@@ -103,14 +103,17 @@ def recommend_by_race(
     limit, parts = keypoint_limit(max_keypoints), as_preset(preset)
     engine_here = local_engine("estimated", workers)
     store = Store.create(Path(output or f"{dataset.name}-race"))
-    tell = RaceProgress(progress, seconds)
-    flight = survey_flight(dataset, options.max_pairs, seed, tell.surveyed, store.surveys)
+    begun_before = (store.folder / RACE).exists()
+    tell = RaceProgress(progress, seconds, began, strict=not begun_before)
+    surveyed = tell.preparing("surveying the flight", "images and pairs")
+    flight = survey_flight(dataset, options.max_pairs, seed, surveyed, store.surveys)
     part = flight.dataset if flight else _spread(dataset, options.max_pairs, seed)
     pairs = part.pairs
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
+    reached = tell.preparing("setting thresholds", "detectors")
     parts, footings = at_equal_footing(
-        context.methods, parts, part.images, chosen, limit, seed=seed, progress=tell.reached
+        context.methods, parts, part.images, chosen, limit, seed=seed, progress=reached
     )
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     context = replace(context, references=store.references)
@@ -118,6 +121,7 @@ def recommend_by_race(
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
         key, there = _key(evaluators, chosen, options), evaluators.race.there
         journal = Journal.read(store.folder, key, seconds, there)
+        tell.resumed(journal.spent)
         session = Session(journal, began=began, watch=tell.watch)
         tell.looking(len(pairs))
         with engine_here.standing(evaluators.overlap.context) as other:
