@@ -36,13 +36,17 @@ AUDIT_VENV := .venv-audit
 AUDIT_INSTALLED := $(AUDIT_VENV)/.installed
 AUDIT_TOOLS := pip-audit==2.10.1 pip-licenses==5.5.5 cyclonedx-bom==7.5.0
 
+DOCS_VENV := .venv-docs
+DOCS_INSTALLED := $(DOCS_VENV)/.installed
+DOCS_TOOLS := mkdocs-material==9.8.2 mkdocs==1.6.1 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11 pymdown-extensions==13.1.2
+
 LIGHT_VENV := .venv-light
 LIGHT_INSTALLED := $(LIGHT_VENV)/.installed
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page audit bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page audit docs bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -120,6 +124,15 @@ $(AUDIT_INSTALLED): Makefile | $(BIN)/python
 	$(AUDIT_VENV)/bin/python -m pip install --quiet $(AUDIT_TOOLS)
 	@touch $@
 
+# It reads the source without importing it. Only the first time needs the network, for the tools.
+docs: $(DOCS_INSTALLED) ## the guide as a site, in site/; warnings are errors
+	NO_MKDOCS_2_WARNING=1 $(DOCS_VENV)/bin/mkdocs build --quiet --strict
+
+$(DOCS_INSTALLED): Makefile | $(BIN)/python
+	$(BIN)/python -m venv --clear $(DOCS_VENV)
+	$(DOCS_VENV)/bin/python -m pip install --quiet $(DOCS_TOOLS)
+	@touch $@
+
 bench: setup ## the benchmarks of the framework itself
 	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
 
@@ -131,5 +144,5 @@ lock: setup ## pin the newest allowed versions in requirements.lock and requirem
 	$(LOCK) --group light --constraint requirements.lock --output-file requirements-light.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(AUDIT_VENV) sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(AUDIT_VENV) $(DOCS_VENV) site sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache node_modules

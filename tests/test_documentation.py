@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import aerocues
 from docs.tables import TABLES, rendered
 from tests.evaluation.cluster import Cluster
 
@@ -98,6 +99,16 @@ def test_links_between_pages_lead_somewhere(page: Path) -> None:
         assert other.exists(), f"{page.name} links to {target}"
         if anchor:
             assert anchor in anchors(other), f"{page.name} links to {target}"
+
+
+def test_the_site_has_every_page_and_every_public_name() -> None:
+    navigation = (REPOSITORY / "mkdocs.yml").read_text(encoding="utf-8")
+    listed = re.findall(r"(\w+\.md)$", navigation, re.MULTILINE)
+    assert sorted(listed) == [page.name for page in PAGES[1:]]
+    reference = (REPOSITORY / "docs" / "api.md").read_text(encoding="utf-8")
+    names = re.findall(r"^::: (aerocues\.[\w.]+)\.(\w+)$", reference, re.MULTILINE)
+    assert {name for _, name in names} == set(aerocues.__all__) - {"__version__"}
+    assert all(getattr(aerocues, name).__module__ == module for module, name in names)
 
 
 @pytest.mark.parametrize("command", [one for one in ALL_COMMANDS if one.startswith("make")])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from http.client import HTTPConnection
 from pathlib import Path
 
@@ -50,7 +51,10 @@ def test_a_page_is_made_where_there_are_new_rows_and_seldom() -> None:
 
 
 def test_the_page_waits_for_rows_that_can_be_ranked_and_keeps_the_last_one() -> None:
-    clock, pages = Clock(), iter([ScoreError("no rows < yet"), PAGE, ScoreError("a bad moment")])
+    clock = Clock()
+    pages: Iterator[str | ScoreError] = iter(
+        [ScoreError("no rows < yet"), PAGE, ScoreError("a bad moment")]
+    )
 
     def make(folder: Path) -> str:
         found = next(pages)

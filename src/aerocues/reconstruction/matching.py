@@ -59,10 +59,10 @@ class SceneMatcher:
         )
         self._held: OrderedDict[str, Features] = OrderedDict()
 
-    def _announce(self, call: StageCall | None) -> None:
+    def _announce(self, call: StageCall) -> None:
         """Announce a call, and which image or pair of how many it is about."""
         number, total = self._place
-        self._tell(replace(call, number=number, total=total) if call else None)
+        self._tell(replace(call, number=number, total=total))
 
     def match(self) -> MatchedScene:
         """Features and matches; StageError where a method fails."""
