@@ -175,6 +175,9 @@ def imported_entry(
             "total_seconds": _column("s", "lower", seconds),
         },
         "score": _score(precision, inliers, seconds, pairs),
+        "preset_scores": {"thesis": np.nanmean(precision, axis=1).tolist()},
+        "megabytes": np.linspace(0.1, 4, len(methods)).tolist(),
+        "race": None,
         "medians": {
             **dict.fromkeys(("detect", "describe", "match", "verify"), [None] * len(methods)),
             "total": np.median(seconds, axis=1).tolist(),
@@ -222,8 +225,16 @@ def _score(
     weights = [0.5, 0.3, 0.2]
     return {
         "criteria": [
-            {"name": name, "better": better, "description": HARMFUL, "reconstruction": False}
-            for name, better in CRITERIA.items()
+            {
+                "name": name,
+                "better": better,
+                "description": HARMFUL,
+                "aspect": aspect,
+                "reconstruction": False,
+            }
+            for (name, better), aspect in zip(
+                CRITERIA.items(), ("accuracy", "quantity", "speed"), strict=True
+            )
         ],
         "rank": rank.tolist(),
         "rank_low": np.maximum(rank - 1, 1).tolist(),

@@ -17,6 +17,7 @@ from aerocues.methods.selection import Patterns
 from aerocues.modelling.final import LEAST_SECONDS, SHARE, build_final, has_final
 from aerocues.progress import Progress
 from aerocues.tuning.device import Device, as_device
+from aerocues.tuning.journal import record_answer
 from aerocues.tuning.recommend import RaceOptions, recommend_by_race
 from aerocues.tuning.recommendation import Recommendation
 
@@ -116,15 +117,16 @@ def recommend(
         began=began,
         progress=progress,
     )
-    if not final:
-        return found
-    built = build_final(
-        found,
-        dataset,
-        seconds=max(seconds - found.outcome.rounds[-1].spent, LEAST_SECONDS),
-        max_keypoints=max_keypoints,
-        seed=seed,
-        workers=workers,
-        progress=progress,
-    )
-    return replace(found, final=built)
+    if final:
+        built = build_final(
+            found,
+            dataset,
+            seconds=max(seconds - found.outcome.rounds[-1].spent, LEAST_SECONDS),
+            max_keypoints=max_keypoints,
+            seed=seed,
+            workers=workers,
+            progress=progress,
+        )
+        found = replace(found, final=built)
+    record_answer(found.folder, found.facts())
+    return found

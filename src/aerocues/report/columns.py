@@ -187,6 +187,7 @@ def criterion_facts(criteria: Sequence[Criterion] = CRITERIA) -> list[dict[str, 
             "name": each.name,
             "better": each.better,
             "description": each.description,
+            "aspect": each.aspect,
             "reconstruction": each.reconstruction,
         }
         for each in criteria

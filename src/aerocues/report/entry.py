@@ -13,8 +13,11 @@ from aerocues.report.arrays import packed_bytes
 from aerocues.report.columns import column_facts, matrix_positions
 from aerocues.report.curves import curves_of, step_of
 from aerocues.report.models import model_facts
+from aerocues.report.preset_scores import preset_scores
+from aerocues.report.race import race_facts
 from aerocues.report.scores import method_labels, score_facts
 from aerocues.report.validation import validation_facts
+from aerocues.results.combination_columns import combination_name
 from aerocues.results.failures import failures_of
 from aerocues.results.medians import combination_medians
 from aerocues.results.scaled_times import SCALED
@@ -127,6 +130,9 @@ def entry_facts(found: ReportEntry) -> dict[str, Any]:
         **_status_matrix(rows, positions, shape),
         "columns": column_facts(rows, positions, shape, found.succeeded, table.criteria),
         "score": score_facts(found.ranking, found.seconds(), entry.preset),
+        "preset_scores": preset_scores(found),
+        "megabytes": _megabytes(found),
+        "race": race_facts(found.results, entry.dataset),
         "medians": _medians(found),
         "validation": validation_facts(found.ranking.scores, found.validation),
         "models": model_facts(found.rows, found.models, chance_fails=found.chance_fails),
@@ -175,6 +181,17 @@ def _medians(found: ReportEntry) -> dict[str, list[float | None]]:
         stage: [medians[name][f"{stage}_seconds"] for name in found.combinations]
         for stage in STAGES
     }
+
+
+def _megabytes(found: ReportEntry) -> list[float | None]:
+    """Descriptors of one image in megabytes, the median over the pairs of each combination."""
+    import polars as pl
+
+    name = combination_name()
+    bytes_of_image = pl.col("keypoints_1") * pl.col("descriptor_bytes")
+    medians = found.rows.group_by(name).agg((bytes_of_image / 1e6).median().alias("megabytes"))
+    known = dict(medians.iter_rows())
+    return [known.get(each) for each in found.combinations]
 
 
 def _outcomes(rows: pl.DataFrame) -> dict[str, Any]:

@@ -21,11 +21,15 @@ LEAST_CONTRAST = 0.55
 
 
 def draw_scores(found: ReportEntry) -> Figure:
-    """CUES of the best with 95 % intervals; filled: not significantly different from the best."""
+    """CUES of the best with 95 % intervals; filled: not significantly different from the best.
+
+    Crosses could not be compared with the best: they share too few pairs with it.
+    """
     from matplotlib.figure import Figure
 
     frame = found.ranking.frame("combination").head(TOP)
     alike = {*found.ranking.indistinguishable(), frame["combination"][0]}
+    untested = set(found.ranking.untested())
     figure = Figure(figsize=(WIDTH * 0.75, 0.9 + LINE * len(frame)))
     axes = figure.subplots()
     for position, row in enumerate(frame.iter_rows(named=True)):
@@ -34,11 +38,15 @@ def draw_scores(found: ReportEntry) -> Figure:
                 [row["score_low"], row["score_high"]], [position] * 2, color=COLOURS[0], lw=1.2
             )
         face = COLOURS[0] if row["combination"] in alike else "white"
-        axes.plot(row["score"], position, "o", ms=4.5, color=COLOURS[0], markerfacecolor=face)
+        marker = "x" if row["combination"] in untested else "o"
+        axes.plot(row["score"], position, marker, ms=4.5, color=COLOURS[0], markerfacecolor=face)
     axes.set_yticks(range(len(frame)), frame["combination"].to_list())
     axes.set_ylim(len(frame) - 0.5, -0.5)
     axes.grid(axis="x")
-    axes.set_xlabel("CUES, 95 % interval (filled: not significantly different from the best)")
+    crosses = "; cross: not compared" if untested.intersection(frame["combination"]) else ""
+    axes.set_xlabel(
+        f"CUES, 95 % interval (filled: not significantly different from the best{crosses})"
+    )
     axes.set_title(_title(found))
     return figure
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,9 @@ from typing import Any
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import RACE
 from aerocues.results.whole_files import json_content, write_whole
+
+ANSWER = "answer"
+"""Beside the journals, whose keys are hashes."""
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,18 @@ class Journal:
         write_whole({self.path: json_content({**_races(self.path), self.key: own})})
 
 
+def record_answer(folder: Path, answer: Mapping[str, Any]) -> None:
+    """Keep what the latest finished race found, for reports, beside its steps."""
+    path = folder / RACE
+    write_whole({path: json_content({**_races(path), ANSWER: dict(answer)})})
+
+
+def recorded_answer(folder: Path) -> dict[str, Any] | None:
+    """What the latest finished race in a results folder found; None if there is none."""
+    answer = _races(folder / RACE).get(ANSWER)
+    return answer if isinstance(answer, dict) else None
+
+
 def _step(asked: str, spent: float, kept: float, missing: Sequence[str]) -> Step:
     """A step as it was recorded; raises what a damaged one deserves."""
     if not isinstance(missing, list) or not math.isfinite(float(spent) + float(kept)):
@@ -143,7 +158,7 @@ def _step(asked: str, spent: float, kept: float, missing: Sequence[str]) -> Step
 
 
 def _races(path: Path) -> dict[str, Any]:
-    """The journals in the file by key; empty if it cannot be read."""
+    """What is in the file by key; empty if it cannot be read."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

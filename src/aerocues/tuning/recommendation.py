@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from aerocues.datasets.dataset import Dataset
 from aerocues.methods.presets import Preset
@@ -20,6 +20,9 @@ from aerocues.tuning.representative import Seen
 
 if TYPE_CHECKING:
     import polars as pl
+
+RECORDED = 40
+"""Combinations whose probability is kept for reports: users see the best of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,3 +113,31 @@ class Recommendation:
         """What to take: the best model's combination or COLMAP's default; else the leader."""
         row = self.final.best if self.final else None
         return name_in_row(row) if row else self.leader
+
+    def facts(self) -> dict[str, Any]:
+        """What a report tells of it, in JSON types."""
+        rows = self.ranked.select("combination", "score", "probability", "pairs", "succeeded")
+        final = self.final
+        return {
+            "dataset": self.dataset.name,
+            "objective": self.objective.name,
+            "title": self.objective.title,
+            "best": self.best,
+            "leader": self.leader,
+            "probability": min(float(self.ranked["probability"][0]), self.readable),
+            "ended": self.outcome.ended,
+            "seconds": self.outcome.rounds[-1].spent,
+            "combinations": self.combinations,
+            "measured": self.measured,
+            "measurements": int(self.outcome.known.sum()),
+            "pairs": len(self.seen.overlapping),
+            "candidates": self.candidates,
+            "ranked": rows.head(RECORDED).to_dicts(),
+            "final": final
+            and {
+                "images": final.images,
+                "of": final.of,
+                "models": [name_in_row(row) for row in final.rows],
+                "unfinished": list(final.unfinished),
+            },
+        }

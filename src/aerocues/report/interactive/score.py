@@ -29,7 +29,8 @@ def cues(view: View) -> Figure:
         np.array([row[name] if row[name] is not None else row["score"] for row in best])
         for name in ("score_low", "score_high")
     )
-    symbols = ["circle" if row["combination"] in alike else "circle-open" for row in best]
+    untested = set(view.found.ranking.untested())
+    symbols = [_symbol(row["combination"], alike, untested) for row in best]
     trace = Scatter(
         x=score,
         y=[row["combination"] for row in best],
@@ -38,8 +39,14 @@ def cues(view: View) -> Figure:
         marker={"color": COLOURS[0], "size": 9, "symbol": symbols},
         hovertemplate="%{y}<br>CUES %{x:.3f}<extra></extra>",
     )
-    axis = "CUES, 95 % interval (filled: cannot be told from the best)"
+    axis = "CUES, 95 % interval (filled: cannot be told from the best; cross: not compared)"
     return framed(view.found.name, [trace], rows=len(best), xaxis_title=axis)
+
+
+def _symbol(name: str, alike: set[str], untested: set[str]) -> str:
+    if name in untested:
+        return "x-thin-open"
+    return "circle" if name in alike else "circle-open"
 
 
 def heat_maps(view: View) -> Figure:

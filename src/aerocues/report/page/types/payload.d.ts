@@ -53,6 +53,11 @@ interface Entry extends Methods {
   status: Packed;
   columns: Record<string, PairColumn>;
   score: Score;
+  /** Scores by each preset of scoring that the measurements suffice for. */
+  preset_scores: Record<string, Value[]>;
+  /** Descriptors of one image. */
+  megabytes: Value[];
+  race: Race | null;
   medians: Record<Stage | "total", Value[]>;
   validation: Validation;
   models: Models | null;
@@ -65,6 +70,27 @@ interface Entry extends Methods {
   run: {[name: string]: Json};
 }
 type Stage = "detect" | "describe" | "match" | "verify";
+
+/** What a race found, or that none was finished. */
+type Race = {unfinished: true} | RaceAnswer;
+interface RaceAnswer {
+  unfinished?: undefined;
+  dataset: string;
+  objective: string;
+  title: string;
+  best: string;
+  leader: string;
+  probability: number;
+  ended: string;
+  seconds: number;
+  combinations: number;
+  measured: number;
+  measurements: number;
+  pairs: number;
+  candidates: number;
+  ranked: {combination: string; score: number; probability: number; pairs: number; succeeded: number}[];
+  final: {images: number; of: number; models: string[]; unfinished: string[]} | null;
+}
 
 interface Pair {
   pair: number;
@@ -90,10 +116,13 @@ interface PairColumn {
   values: Packed;
 }
 
+type Aspect = "accuracy" | "quantity" | "speed" | "other";
+
 interface Criterion {
   name: string;
   better: "higher" | "lower";
   description: string;
+  aspect: Aspect;
   reconstruction: boolean;
 }
 

@@ -1,4 +1,4 @@
-/* Colours: those of Okabe and Ito, which are distinct for every kind of colour vision, and cividis. */
+/* Colours: first those of Okabe and Ito, which are distinct for every kind of colour vision, and cividis. */
 
 import {isKnown} from "./numbers.js";
 import {state} from "./state.js";
@@ -7,12 +7,14 @@ import {state} from "./state.js";
 export const THEMES = {
   light: {
     ink: "#1b2430", muted: "#5b6675", grid: "#e4e8ed", line: "#9aa5b1", surface: "#ffffff",
-    series: ["#0072b2", "#d98a00", "#009e73", "#d55e00", "#5b5fc7", "#b8578f", "#3a9bd9"],
+    series: ["#0072b2", "#d98a00", "#009e73", "#d55e00", "#5b5fc7", "#b8578f", "#3a9bd9",
+      "#7a5c00", "#6b8e23", "#a3123f", "#4d4d4d", "#00868b", "#8e4ec6", "#e0629a"],
     faint: "#c9d1da", hatch: "#a3adb8",
   },
   dark: {
     ink: "#e6eaf0", muted: "#a4afbd", grid: "#2c3540", line: "#66717f", surface: "#171c23",
-    series: ["#56b4e9", "#e69f00", "#2fc79a", "#ff8a4c", "#a3a6ff", "#e59ac4", "#f0e442"],
+    series: ["#56b4e9", "#e69f00", "#2fc79a", "#ff8a4c", "#a3a6ff", "#e59ac4", "#f0e442",
+      "#c9a26b", "#b5d33d", "#ff6b81", "#c0c6cf", "#3fd0d4", "#d08bff", "#ffd0b5"],
     faint: "#3f4a57", hatch: "#56616e",
   },
 };
@@ -29,9 +31,13 @@ export const DIVERGING = {
 
 export const darkWanted = window.matchMedia("(prefers-color-scheme: dark)");
 
+export function isPrinting() {
+  return document.documentElement.classList.contains("printing");
+}
+
 /** @returns {Theme} */
 export function themeName() {
-  if (document.documentElement.classList.contains("printing")) return "light";
+  if (isPrinting()) return "light";
   const chosen = state.get("theme");
   return chosen === "light" || chosen === "dark" ? chosen : (darkWanted.matches ? "dark" : "light");
 }
@@ -77,13 +83,15 @@ export function cellTexts({x, y, z, texts, isBright, size}) {
     ...group, hoverinfo: "skip", textfont: {size, color: group === bright ? "#000000" : "#ffffff"}}));
 }
 
-/** Colour and symbol of the n-th of a series: 7 colours, then other symbols.
+const SAME_SYMBOL = 7;
+
+/** Colour and symbol of the n-th of a series: 14 colours, of which 7 share a symbol.
  * @param {Theme} theme @param {number} position */
 export function seriesStyle(theme, position) {
   const colours = THEMES[theme].series;
   return {
     color: colours[position % colours.length],
-    symbol: SYMBOLS[Math.floor(position / colours.length) % SYMBOLS.length],
-    outline: OUTLINES[Math.floor(position / colours.length) % OUTLINES.length],
+    symbol: SYMBOLS[Math.floor(position / SAME_SYMBOL) % SYMBOLS.length],
+    outline: OUTLINES[Math.floor(position / SAME_SYMBOL) % OUTLINES.length],
   };
 }

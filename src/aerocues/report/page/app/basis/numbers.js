@@ -44,6 +44,13 @@ export function counted(number, noun, plural = `${noun}s`) {
   return `${number.toLocaleString("en")} ${number === 1 ? noun : plural}`;
 }
 
+/** 1st, 2nd, 3rd, 4th.
+ * @param {number} number */
+export function ordinal(number) {
+  const teen = Math.floor(number / 10) % 10 === 1;
+  return `${number}${teen ? "th" : (["th", "st", "nd", "rd"][number % 10] ?? "th")}`;
+}
+
 /** @param {string[]} words @param {string} [last] */
 export function listed(words, last = "and") {
   if (words.length < 2) return words.join("");

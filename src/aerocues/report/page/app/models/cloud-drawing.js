@@ -1,21 +1,24 @@
 /* Draws a cloud on a canvas: points with a depth buffer, then cameras and their true positions. WebGL would not be
    faster for a few thousand points, and it is not available on some phones and for printing. */
 
+import {make} from "../basis/elements.js";
 import {shown} from "../basis/numbers.js";
 import {arrayOf} from "../basis/payload.js";
 import {EYE, projection, unitOf} from "./cloud-space.js";
 import {FONT} from "../shell/figure.js";
 
-/** @typedef {{width: number, height: number, image: ImageData, pixels: Uint32Array, depth: Float32Array}} Buffers */
+/** @typedef {{width: number, height: number, pen: CanvasRenderingContext2D, image: ImageData, pixels: Uint32Array, depth: Float32Array}} Buffers */
 /** @type {Buffers | null} */
 let buffers = null;
 
 /** Memory for the pixels of a canvas. All canvases share it, because they are drawn one after the other.
- * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
-function buffersFor(pen, width, height) {
+ * @param {number} width @param {number} height */
+function buffersFor(width, height) {
   if (buffers?.width !== width || buffers.height !== height) {
+    const pen = make("canvas", {width, height}).getContext("2d");
+    if (!pen) throw new Error("this browser draws nothing on a canvas");
     const image = pen.createImageData(width, height);
-    buffers = {width, height, image, pixels: new Uint32Array(image.data.buffer), depth: new Float32Array(width * height)};
+    buffers = {width, height, pen, image, pixels: new Uint32Array(image.data.buffer), depth: new Float32Array(width * height)};
   }
   return buffers;
 }
@@ -33,7 +36,7 @@ export function drawCloud(pen, view, width, height, density) {
 
 /** @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {number} width @param {number} height @param {number} density */
 function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project, width, height, density) {
-  const {image, pixels, depth} = buffersFor(pen, width, height);
+  const {pen: hidden, image, pixels, depth} = buffersFor(width, height);
   pixels.fill(ground);
   depth.fill(Infinity);
   const points = arrayOf(cloud.points);
@@ -53,7 +56,9 @@ function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project,
       }
     }
   }
-  pen.putImageData(image, 0, 0);
+  // By way of another canvas: printing leaves out what is put into the pixels of one on the page.
+  hidden.putImageData(image, 0, 0);
+  pen.drawImage(hidden.canvas, 0, 0);
 }
 
 const CORNERS = [[-1, -1], [1, -1], [1, 1], [-1, 1]];

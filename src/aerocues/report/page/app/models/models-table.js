@@ -16,11 +16,19 @@ export function modelsOf(entry) {
 export const MODELS = {
   id: "reconstructions", title: "All reconstructions", prefix: "models.", natural: "place",
   columns: modelColumns, rows: shownModels,
-  read: entry => "Sorted by success, then model quality. Do not judge by the reprojection error alone: broken models have the lowest. "
+  read: entry => `Sorted by success, then model quality${byTruth(entry)}. Do not judge by the reprojection error alone: broken models have the lowest. `
     + "A dot marks a success; values of failed reconstructions describe the incomplete model." + aboutBaseline(modelsOf(entry)),
   downFirst: (entry, {key}) => modelColumn(entry, key)?.better === "higher",
   isMarked: (entry, m) => modelsOf(entry).status[m] === "ok",
 };
+
+/** Which error the quality is by: model_quality.py takes the true one where poses are known.
+ * @param {Entry} entry */
+function byTruth(entry) {
+  const {made, values} = modelsOf(entry);
+  const error = made.truth !== "poses" ? "reprojection error" : (values.surface_error ? "distance from the true surface" : "distance of cameras from their true positions");
+  return `: share of the images in place × √(points in 3 images / ${error})`;
+}
 
 /** @param {Models} models */
 function aboutBaseline({baseline, combinations, status}) {

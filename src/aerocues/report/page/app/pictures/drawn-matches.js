@@ -1,6 +1,6 @@
 /* Draws a pair of images with keypoints and matches on a canvas. */
 
-import {counted} from "../basis/numbers.js";
+import {counted, ordinal} from "../basis/numbers.js";
 import {arrayOf, payload} from "../basis/payload.js";
 
 /** @type {{controls: Record<string, Control>, layers: Layer[], panels: PicturePanel[]}} */
@@ -149,11 +149,4 @@ function drawMatch(pen, [x1, y1, x2, y2], place) {
     pen.arc(...end, 1.8, 0, 2 * Math.PI);
     pen.fill();
   }
-}
-
-/** @param {number} number */
-function ordinal(number) {
-  const last = number % 10;
-  const teen = Math.floor(number / 10) % 10 === 1;
-  return `${number}${teen ? "th" : (["th", "st", "nd", "rd"][last] ?? "th")}`;
 }

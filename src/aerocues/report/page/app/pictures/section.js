@@ -4,7 +4,7 @@ import {fileStem, saveFile} from "../basis/downloads.js";
 import {figuresList, make} from "../basis/elements.js";
 import {pairLabel, ranked} from "../basis/entries.js";
 import {shownIn} from "../basis/filter.js";
-import {labelOf, sentenceCase, valueText} from "../basis/numbers.js";
+import {labelOf, ordinal, sentenceCase, valueText} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry} from "../basis/state.js";
 import {drawPanel, pictureView} from "./drawn-matches.js";
@@ -72,7 +72,7 @@ function picturedCombinations(entry) {
 /** @type {ControlSpec} */
 const EVERY = {name: "every", label: "Draw", fallback: () => "auto", options: () => [
   {key: "auto", label: "a legible number of matches"}, {key: "1", label: "every match"},
-  ...[2, 5, 10, 20, 50].map(n => ({key: String(n), label: `every ${n}th match`}))]};
+  ...[2, 5, 10, 20, 50].map(n => ({key: String(n), label: `every ${ordinal(n)} match`}))]};
 
 /** @param {HTMLElement} body */
 function buildPictures(body) {

@@ -62,19 +62,26 @@ function sameLine({colours}, drawn, x, y) {
 export const TRUTH_MATRIX = {
   id: "truthmatrix", title: "Which measures agree with the ground truth",
   read: "Spearman’s correlation over the combinations that match the filter. Near 1, a measure without ground truth ranks the "
-    + "combinations as the ground truth does. Failed pairs count as 0.",
+    + "combinations as the ground truth does. The first rows are scores: CUES as on this page, and by each preset. Failed pairs count as 0.",
   available: hasTruth,
   draw({entry, shown: rows, theme, narrow}) {
-    const [truths, others] = [truthColumns(entry), inlierColumns(entry)];
+    const [truths, others] = [truthColumns(entry), rankingMeasures(entry)];
     if (rows.length < 3) return {empty: "A correlation needs at least three combinations."};
-    const z = others.map(other => truths.map(truth => correlationOfMeans(entry, rows, other, truth)));
-    return matrixFigure({x: truths.map(labelOf), y: others.map(labelOf), z, theme, narrow, what: "Spearman"});
+    const z = others.map(({values}) => truths.map(truth => correlationOver(rows, values, meansWithFailures(entry, truth))));
+    return matrixFigure({x: truths.map(labelOf), y: others.map(({label}) => label), z, theme, narrow, what: "Spearman"});
   },
 };
 
-/** @param {Entry} entry @param {number[]} rows @param {string} first @param {string} second */
-function correlationOfMeans(entry, rows, first, second) {
-  const [x, y] = [meansWithFailures(entry, first), meansWithFailures(entry, second)];
+/** What could rank combinations without ground truth: scores, then single measures.
+ * @param {Entry} entry @returns {{label: string, values: Value[]}[]} */
+function rankingMeasures(entry) {
+  return [{label: "CUES", values: entry.score.score},
+    ...Object.entries(entry.preset_scores).map(([name, values]) => ({label: `preset “${name}”`, values})),
+    ...inlierColumns(entry).map(name => ({label: labelOf(name), values: meansWithFailures(entry, name)}))];
+}
+
+/** @param {number[]} rows @param {Value[]} x @param {Value[]} y */
+function correlationOver(rows, x, y) {
   const both = rows.filter(a => isKnown(x[a]) && isKnown(y[a]));
   return spearman(valuesAt(x, both), valuesAt(y, both));
 }

@@ -6,26 +6,34 @@ import {fixed, isKnown, percent, shown} from "../basis/numbers.js";
 import {categoryAxis, names} from "../shell/axes.js";
 import {topControl} from "../shell/controls.js";
 
+const NORMS = [{norm: "L2", binary: false, series: 0, filled: "circle"}, {norm: "Hamming", binary: true, series: 1, filled: "diamond"}];
+/** The symbol of each standing, from that of its norm.
+ * @type {Record<string, (filled: string) => string>} */
+const STANDINGS = {"not significantly different": filled => filled, "significantly worse": filled => `${filled}-open`,
+  "not compared": () => "x-thin-open"};
+
+/** How a combination compares with the best.
+ * @param {Entry} entry @param {number} a */
+function standingOf({score}, a) {
+  if (a === score.best || score.indistinguishable.includes(a)) return "not significantly different";
+  return isKnown(score.p_value[a]) ? "significantly worse" : "not compared";
+}
+
 /** @type {FigureSpec} */
 export const SCORE_DOTS = {
   id: "dots", title: "The best, with intervals", tall: true,
   read: "The dot is the score, the bar its 95 % interval over the pairs. Filled: not significantly different from the best; "
-    + "hollow: significantly worse. Intervals can overlap although the difference is significant, because all combinations share the pairs.",
+    + "hollow: significantly worse; cross: not compared, because it shares too few pairs with the best. Intervals can overlap although the difference is significant, because all combinations share the pairs.",
   controls: [topControl()],
   draw({entry, shown: rows, colours, option}) {
     const scored = withRank(entry, rows);
     if (!scored.length) return {empty: "None of these combinations has a score."};
     const top = scored.slice(0, Number(option("top")));
-    const equal = new Set([entry.score.best, ...entry.score.indistinguishable]);
-    /** @type {[name: string, belongs: (a: number) => boolean, series: number, symbol: string][]} */
-    const groups = [
-      ["L2, not significantly different", a => equal.has(a) && !isBinary(entry, a), 0, "circle"],
-      ["L2, worse", a => !equal.has(a) && !isBinary(entry, a), 0, "circle-open"],
-      ["Hamming, not significantly different", a => equal.has(a) && isBinary(entry, a), 1, "diamond"],
-      ["Hamming, worse", a => !equal.has(a) && isBinary(entry, a), 1, "diamond-open"],
-    ];
-    const data = groups.map(([name, belongs, series, symbol]) =>
-      dotsTrace(entry, top.filter(belongs), name, colours.series[series], symbol)).filter(trace => trace.y.length);
+    const groups = NORMS.flatMap(({norm, binary, series, filled}) => Object.entries(STANDINGS).map(([standing, mark]) => {
+      const members = top.filter(a => isBinary(entry, a) === binary && standingOf(entry, a) === standing);
+      return dotsTrace(entry, members, `${norm}, ${standing}`, colours.series[series], mark(filled));
+    }));
+    const data = groups.filter(trace => trace.y.length);
     return {
       data, height: top.length * 30 + 110,
       layout: {xaxis: {title: "CUES"}, yaxis: categoryAxis(names(entry, top)), hovermode: "closest"},

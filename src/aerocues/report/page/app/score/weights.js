@@ -2,7 +2,7 @@
 
 import {seriesStyle, SYMBOLS} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
-import {labelOf} from "../basis/numbers.js";
+import {labelOf, listed, percent} from "../basis/numbers.js";
 import {categoryAxis, heightOfRows} from "../shell/axes.js";
 
 /** @type {FigureSpec} */
@@ -26,11 +26,24 @@ export const WEIGHTS = {
     return {
       data: [bar, ...traces], height: heightOfRows(criteria.length * 1.4, 100),
       layout: {xaxis: {title: "weight", rangemode: "tozero"}, yaxis: categoryAxis(criteria), hovermode: "closest"},
-      note: entry.score.criteria.some(each => each.reconstruction)
-        ? "Some criteria describe the 3D reconstruction, with one value per combination." : null,
+      note: [countsNote(entry), entry.score.criteria.some(each => each.reconstruction)
+        ? "Some criteria describe the 3D reconstruction, with one value per combination." : ""].filter(Boolean).join(" ") || null,
     };
   },
 };
+
+const MOST_FOR_COUNTS = 0.5;
+
+/** A warning where counts have most of the weight: they reward many matches, right or wrong.
+ * @param {Entry} entry */
+export function countsNote({score}) {
+  const {methods, values} = score.weights;
+  const aggregate = values[methods[methods.length - 1]] ?? [];
+  const counts = score.criteria.map((each, i) => ({...each, weight: Number(aggregate[i] ?? 0)})).filter(each => each.aspect === "quantity");
+  const total = counts.reduce((sum, each) => sum + each.weight, 0);
+  if (total <= MOST_FOR_COUNTS) return "";
+  return `Counts have ${percent(total)} of the weight (${listed(counts.map(each => labelOf(each.name)))}): this ranking favours many matches over right ones.`;
+}
 
 /** @type {Record<string, string>} */
 const WEIGHT_METHODS = {pca: "PCA", critic: "CRITIC", critic_published: "CRITIC, as published"};

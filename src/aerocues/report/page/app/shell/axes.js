@@ -23,16 +23,20 @@ export function names(entry, positions) {
   return positions.map(a => safe(entry.combinations[a]));
 }
 
-/** 1, 2, 5, 10, .. or, over many powers, 1, 10, 100, .. between two values.
+/* Digits of the ticks of a logarithmic axis, from coarse to fine. */
+const DIGITS = [[1], [1, 3], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 7], Array.from({length: 90}, (_, i) => (10 + i) / 10),
+  Array.from({length: 900}, (_, i) => (100 + i) / 100)];
+const FEWEST_TICKS = 3;
+
+/** 1, 10, 100, .. or, between values that are near each other, finer steps: as coarse as leaves three ticks between them.
  * @param {number} low @param {number} high */
 function logTicks(low, high) {
-  const [from, to] = [Math.log10(low), Math.log10(high)];
-  const steps = to - from > 2.2 ? [1] : (to - from > 1.2 ? [1, 3] : [1, 2, 5]);
-  const ticks = [];
-  for (let power = Math.floor(from) - 1; power <= Math.ceil(to); power += 1) {
-    for (const step of steps) ticks.push(Number(`${step}e${power}`));
-  }
-  return ticks;
+  /** @type {number[]} */
+  const powers = [];
+  for (let power = Math.floor(Math.log10(low)) - 1; power <= Math.ceil(Math.log10(high)); power += 1) powers.push(power);
+  const all = DIGITS.map(digits => powers.flatMap(power => digits.map(digit => Number(`${digit}e${power}`))));
+  const enough = (/** @type {number[]} */ ticks) => ticks.filter(tick => low <= tick && tick <= high).length >= FEWEST_TICKS;
+  return all.find(enough)?.filter(tick => low / 10 <= tick && tick <= high * 10) ?? [low];
 }
 
 /** A logarithmic axis for these values, with formatted ticks.

@@ -1,6 +1,6 @@
 /* Figures: drawn when they come into view, redrawn when the state changes, saved on request. */
 
-import {themeName, THEMES} from "../basis/colours.js";
+import {isPrinting, themeName, THEMES} from "../basis/colours.js";
 import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
 import {announce, make} from "../basis/elements.js";
 import {CODES} from "../basis/entries.js";
@@ -13,6 +13,9 @@ import {selectControl} from "./controls.js";
 /** @type {Figure[]} */
 export const figures = [];
 const NARROW = 480;
+/* Two figures with their words fit on a page; rows with names keep room for these. */
+const PRINTED_HEIGHT = 340;
+const PRINTED_SHARE = 0.7;
 const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
 const touched = window.matchMedia("(pointer: coarse)");
 
@@ -84,8 +87,14 @@ export function drawFigure(figure) {
     return;
   }
   if (!figure.plot.classList.contains("js-plotly-plot")) figure.plot.replaceChildren();
-  figure.plot.style.height = `${drawn.height}px`;
-  Plotly.react(figure.plot, drawn.data, fullLayout(drawn, context), CONFIG);
+  const height = isPrinting() ? printedHeight(drawn) : drawn.height;
+  figure.plot.style.height = `${height}px`;
+  Plotly.react(figure.plot, drawn.data, fullLayout({...drawn, height}, context), CONFIG);
+}
+
+/** @param {PlotDrawn} drawn */
+function printedHeight({height, layout}) {
+  return layout.yaxis?.type === "category" ? PRINTED_SHARE * height : Math.min(height, PRINTED_HEIGHT);
 }
 
 /** @param {Figure} figure @param {Drawn} drawn */

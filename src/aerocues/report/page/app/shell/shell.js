@@ -173,12 +173,22 @@ function linkTo(id) {
   return link;
 }
 
+/** Scrolls the contents sideways, on narrow screens, so that a link is in the middle.
+ * @param {HTMLElement} link */
+function bringIntoView(link) {
+  const contents = elementOf("contents");
+  contents.scrollLeft = link.offsetLeft - (contents.clientWidth - link.offsetWidth) / 2;
+}
+
 /* Marks the visible section in the contents. */
 export function followScrolling() {
   const observer = new IntersectionObserver(seen => {
     for (const {target, isIntersecting} of seen) {
       const link = linkTo(target.id);
-      if (isIntersecting) link.setAttribute("aria-current", "true");
+      if (isIntersecting) {
+        link.setAttribute("aria-current", "true");
+        bringIntoView(link);
+      }
       else link.removeAttribute("aria-current");
     }
   }, {rootMargin: "-35% 0px -60% 0px"});
