@@ -61,7 +61,18 @@ def small_payload() -> dict[str, Any]:
         "images": {key: {"src": PIXEL, "width": 60, "height": 40, "scale": 0.5} for key in "ab"},
         "pictures": [picture_of(full, 3, 0), picture_of(full, 0, 0), picture_of(full, 3, 5)],
         "clouds": small_clouds(full["name"]),
+        "maps": [map_of(full)],
     }
+
+
+def map_of(entry: dict[str, Any]) -> dict[str, Any]:
+    """The images of an entry, side by side."""
+    names = ["a.png", *(pair["image_2"] for pair in entry["pairs"])]
+    images = [
+        {"name": name, "x": 10.0 * place, "y": float(place % 3), "src": PIXEL}
+        for place, name in enumerate(names)
+    ]
+    return {"entry": entry["name"], "known": "gps", "images": images}
 
 
 def lone_payload() -> dict[str, Any]:
@@ -82,6 +93,7 @@ def frame_of(entries: list[dict[str, Any]]) -> dict[str, Any]:
         "images": {},
         "pictures": [],
         "clouds": [],
+        "maps": [],
         "method": {
             "columns": [
                 {

@@ -125,7 +125,7 @@ def test_another_data_set_can_be_chosen(open_report: Open) -> None:
     opened = open_report()
     opened.page.select_option("#entry", "imported")
     assert opened.fragment() == "entry=imported"
-    assert "imported" in opened.page.inner_text("#verdict")
+    assert "imported" in opened.page.inner_text("#facts")
     opened.figure("curves")
     assert "series" in opened.page.inner_text("#figure-curves")
     opened.figure("stages")

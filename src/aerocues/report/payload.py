@@ -11,6 +11,7 @@ from aerocues.report.arrays import plain
 from aerocues.report.clouds import Clouds
 from aerocues.report.comparison import comparison_facts, machine_facts
 from aerocues.report.entry import ReportEntry, entry_facts
+from aerocues.report.flight_map import FlightMap
 from aerocues.report.method import incompatible, method_facts
 from aerocues.report.pictures import Pictures
 from aerocues.report.scores import cautions
@@ -22,6 +23,7 @@ def payload_of(
     *,
     pictures: Pictures | None = None,
     clouds: Clouds | None = None,
+    maps: Sequence[FlightMap] = (),
 ) -> dict[str, Any]:
     """The payload of the page.
 
@@ -31,11 +33,13 @@ def payload_of(
     title : str
     pictures : Pictures, optional
     clouds : Clouds, optional
-        Notes of both are shown in the section on the method.
+    maps : sequence of FlightMap
+        Notes of all are shown in the section on the method.
     """
     version = version_of("aerocues")
     shown, modelled = pictures or Pictures(), clouds or Clouds()
     cautioned = [f"{found.name}: {each}" for found in entries for each in cautions(found.ranking)]
+    drawn = [note for each in maps for note in each.notes]
     scored = [found.entry for found in entries]
     measured = (name for found in entries for name in found.combinations)
     facts = {
@@ -49,6 +53,7 @@ def payload_of(
         "images": shown.images,
         "pictures": shown.pictures,
         "clouds": modelled.clouds,
-        "method": method_facts(version, [*cautioned, *modelled.notes, *shown.notes]),
+        "maps": [each.facts for each in maps if each.facts],
+        "method": method_facts(version, [*cautioned, *modelled.notes, *drawn, *shown.notes]),
     }
     return dict(plain(facts))

@@ -178,6 +178,7 @@ def write_page(
     """Write the page of scored entries; see `write_report`."""
     from aerocues.datasets.catalog import open_dataset
     from aerocues.report.clouds import clouds_of
+    from aerocues.report.flight_map import flight_map
     from aerocues.report.page import page_of
     from aerocues.report.payload import payload_of
     from aerocues.report.pictures import pictures_of
@@ -195,7 +196,8 @@ def write_page(
     found = [pictures_of(entry, pictures, images, told) for entry in entries if pictures]
     told(f"writing {output}")
     heading = title or default_title(entries)
-    page = page_of(payload_of(entries, heading)).encode()
+    maps = [flight_map(entry, images) for entry in entries if pictures]
+    page = page_of(payload_of(entries, heading, maps=maps)).encode()
     room = int(max_megabytes * 1e6) - len(page)
     # If there are pictures, clouds take at most half of the room.
     share = room // 2 if any(each.pictures for each in found) else room
@@ -203,7 +205,7 @@ def write_page(
     kept = fitting(found, room - sum(map(size_of, clouds.clouds)))
     notes = [*clouds.notes, *kept.notes]
     if clouds.clouds or kept.pictures or notes:
-        payload = payload_of(entries, heading, pictures=kept, clouds=clouds)
+        payload = payload_of(entries, heading, pictures=kept, clouds=clouds, maps=maps)
         page = page_of(payload).encode()
     write_file(output, page)
     for note in notes:

@@ -37,8 +37,8 @@ class Thumbnail:
         return asdict(self)
 
 
-def thumbnail(image: Image) -> Thumbnail:
-    """The image as measured (size, equalisation), shrunk and compressed.
+def thumbnail(image: Image, most: int = WIDTH) -> Thumbnail:
+    """The image as measured (size, equalisation), shrunk to at most this width and compressed.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def thumbnail(image: Image) -> Thumbnail:
 
     bgr = image.read().bgr
     height, width = bgr.shape[:2]
-    scale = min(1.0, WIDTH / width)
+    scale = min(1.0, most / width)
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
     picture = Pillow.fromarray(bgr[:, :, ::-1]).resize(size, Pillow.Resampling.LANCZOS)
     content = io.BytesIO()

@@ -3,7 +3,10 @@
 import {applyTheme, darkWanted} from "./basis/colours.js";
 import {state} from "./basis/state.js";
 import {refreshClouds} from "./models/clouds.js";
-import {ANSWER_SECTION} from "./answer/section.js";
+import {DECIDE_SECTION} from "./decide/section.js";
+import {buildDrawer} from "./drawer/drawer.js";
+import {isHere, openCombination} from "./drawer/combination.js";
+import {TABLE_SECTION} from "./table/section.js";
 import {SCORE_SECTION} from "./score/section.js";
 import {QUALITY_SECTION} from "./quality/section.js";
 import {TIME_SECTION} from "./time/section.js";
@@ -11,11 +14,11 @@ import {RELATIONS_SECTION} from "./relations/section.js";
 import {PICTURES_SECTION} from "./pictures/section.js";
 import {MODELS_SECTION} from "./models/section.js";
 import {METHOD_SECTION} from "./method/section.js";
-import {drawFigure, drawStale, figures, refreshFigures} from "./shell/figure.js";
+import {drawFigure, drawStale, figures, onChosen, refreshFigures} from "./shell/figure.js";
 import {addSection, buildMasthead, buildSections, buildToolbar, followScrolling, goTo, updateSections, updateToolbar} from "./shell/shell.js";
 
 /* In the order of the page. */
-const SECTIONS = [ANSWER_SECTION, SCORE_SECTION, QUALITY_SECTION, TIME_SECTION, RELATIONS_SECTION, PICTURES_SECTION,
+const SECTIONS = [DECIDE_SECTION, TABLE_SECTION, SCORE_SECTION, QUALITY_SECTION, TIME_SECTION, RELATIONS_SECTION, PICTURES_SECTION,
   MODELS_SECTION, METHOD_SECTION];
 
 function start() {
@@ -24,6 +27,12 @@ function start() {
   applyTheme();
   buildMasthead();
   buildSections();
+  buildDrawer();
+  onChosen(name => { if (isHere(name)) openCombination(name); });
+  document.addEventListener("click", event => {
+    const chosen = event.target instanceof Element ? event.target.closest("[data-combination]") : null;
+    if (chosen instanceof HTMLElement || chosen instanceof SVGElement) openCombination(chosen.dataset.combination ?? "");
+  });
   const toolbar = buildToolbar();
   const update = (/** @type {Set<string>} */ changed) => {
     applyTheme();

@@ -77,6 +77,27 @@ interface ColumnTable extends ColumnTableSpec {
   words: HTMLElement;
 }
 
+/* The answer */
+
+/** A combination for a purpose; `a` and `m` are null where no pairs were measured, or no model was built. */
+interface Candidate {
+  name: string;
+  a: number | null;
+  m: number | null;
+  /** Higher is better. */
+  value: number;
+  text: string;
+}
+
+interface Purpose {
+  key: string;
+  label: string;
+  meaning(entry: Entry): string;
+  available?(entry: Entry): boolean;
+  /** Of the combinations that match the filter, the best first. */
+  rank(entry: Entry, rows: number[]): Candidate[];
+}
+
 /* Controls */
 
 interface Option {
@@ -172,6 +193,8 @@ interface FigureSpec {
   ignoresFilter?: boolean;
   /** Whether it shows combinations of all entries. */
   acrossEntries?: boolean;
+  /** Whether it shows the answer, or what was chosen. */
+  showsAnswer?: boolean;
 }
 
 interface Figure extends Omit<FigureSpec, "controls"> {
@@ -193,6 +216,8 @@ interface SectionSpec {
   id: string;
   title: string;
   read: string;
+  /** The level that begins with it. */
+  level?: string;
   build(body: HTMLElement): void;
   /** Whether there is anything to show; by default there is. */
   available?(entry: Entry): boolean;

@@ -14,6 +14,7 @@ interface Payload {
   images: Record<string, Thumbnail>;
   pictures: Picture[];
   clouds: Cloud[];
+  maps: FlightMap[];
   method: MethodFacts;
 }
 
@@ -296,6 +297,13 @@ interface StageTimes {
   ratio_low: number;
   ratio_high: number;
   rank_correlation: Value;
+}
+
+/** Where images were taken: `x` to the east, `y` to the north; metres, unless only their order is known. */
+interface FlightMap {
+  entry: string;
+  known: "truth" | "gps" | "order";
+  images: {name: string; x: number; y: number; src: string | null}[];
 }
 
 interface Thumbnail {

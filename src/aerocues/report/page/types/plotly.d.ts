@@ -21,6 +21,11 @@ interface PlotlyLibrary {
     options: {format: string; width: number; height: number; scale: number}): Promise<string>;
 }
 
+/** An element with a figure in it. */
+interface PlotlyElement extends HTMLElement {
+  on(name: "plotly_click", listener: (event: {points: {data: Trace; pointIndex: number}[]}) => void): void;
+}
+
 declare const Plotly: PlotlyLibrary;
 
 interface Window {

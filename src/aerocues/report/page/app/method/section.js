@@ -9,6 +9,7 @@ import {currentEntry} from "../basis/state.js";
 export const METHOD_SECTION = {
   id: "method",
   title: "Method",
+  level: "Method",
   read: "How everything was measured and scored, what failed and why, the definition of every column, and how to cite this.",
   build(body) {
     body.append(make("div", {id: "method-entry"}), make("div", {id: "method-words"}, ...methodWords()));

@@ -130,7 +130,7 @@ function heatCell({entry, colours}, heat, name, {x, y, width, height}) {
   const tip = heatTip(entry, heat.measure, a);
   if (!isKnown(value)) return makeSvg("rect", {...box, fill: "none", stroke: colours.grid, "data-tip": tip});
   const share = heatShare(heat, value);
-  const rect = makeSvg("rect", {...box, fill: onCividis(share), "data-tip": tip});
+  const rect = makeSvg("rect", {...box, fill: onCividis(share), "data-tip": tip, "data-combination": name, cursor: "pointer"});
   if (width < 24) return rect;
   return [rect, makeSvg("text", {x: x + width / 2, y: y + height / 2 + 3.5, "text-anchor": "middle", "font-size": 10,
     fill: isBrightOnScale(share) ? "#000000" : "#ffffff", "pointer-events": "none"}, cellText(value))];

@@ -2,7 +2,6 @@
 
 import {COMPONENTS} from "./components.js";
 import {HEAT_MAP} from "./heat-map.js";
-import {PARETO} from "./pareto.js";
 import {SCORE_DOTS} from "./score-dots.js";
 import {WEIGHTS} from "./weights.js";
 import {addFigure} from "../shell/figure.js";
@@ -12,8 +11,8 @@ export const SCORE_SECTION = {
   id: "score",
   title: "CUES",
   read: "Where good scores come from: which detector suits which descriptor, how much the best differ, "
-    + "the weights of the criteria, and the trade-off between speed and quality.",
+    + "and the weights of the criteria.",
   build(body) {
-    for (const spec of [HEAT_MAP, SCORE_DOTS, WEIGHTS, COMPONENTS, PARETO]) addFigure(body, spec);
+    for (const spec of [HEAT_MAP, SCORE_DOTS, WEIGHTS, COMPONENTS]) addFigure(body, spec);
   },
 };

@@ -79,13 +79,20 @@ export function updateColumnTable(spec, changed) {
   const span = table.span?.(entry, drawn) ?? WHOLE;
   table.element.replaceChildren(
     make("thead", {}, make("tr", {}, columns.map(column => headCell(table, column)))),
-    make("tbody", {}, drawn.map(a => make("tr", {class: table.isMarked?.(entry, a) ? "equal" : null},
+    make("tbody", {}, drawn.map(a => make("tr", {class: rowClass(table, entry, a)},
       rowCells(columns, a, span)))));
   if (!rows.length) {
     table.element.append(make("tbody", {}, make("tr", {}, make("td", {colspan: columns.length},
       "No combination matches the filter."))));
   }
   updateMore(table, rows.length, limit);
+}
+
+/** Rows that are marked, and the one that was chosen.
+ * @param {ColumnTable} table @param {Entry} entry @param {number} a */
+function rowClass(table, entry, a) {
+  const name = table.columns(entry).find(column => column.key === "combination")?.text(a);
+  return [table.isMarked?.(entry, a) ? "equal" : "", name && name === state.get("decide.pick") ? "picked" : ""].filter(Boolean).join(" ") || null;
 }
 
 /** @param {ColumnTable} table @param {Column} column */
@@ -115,7 +122,7 @@ function rowCells(columns, a, span) {
   return columns.map(column => {
     const content = column.cell?.(a, span) ?? column.text(a);
     return column.key === "combination"
-      ? make("th", {scope: "row"}, content)
+      ? make("th", {scope: "row"}, make("button", {type: "button", class: "link", "data-combination": column.text(a)}, content))
       : make("td", {class: column.number ? "number" : column.kind}, content);
   });
 }

@@ -2,12 +2,12 @@
 
 import {isPrinting, themeName, THEMES} from "../basis/colours.js";
 import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
-import {announce, make} from "../basis/elements.js";
+import {announce, make, safe} from "../basis/elements.js";
 import {CODES} from "../basis/entries.js";
 import {shownIn} from "../basis/filter.js";
 import {isKnown} from "../basis/numbers.js";
 import {bytesOf} from "../basis/payload.js";
-import {currentEntry} from "../basis/state.js";
+import {currentEntry, state} from "../basis/state.js";
 import {selectControl} from "./controls.js";
 
 /** @type {Figure[]} */
@@ -86,10 +86,45 @@ export function drawFigure(figure) {
     figure.plot.replaceChildren(drawn.svg());
     return;
   }
-  if (!figure.plot.classList.contains("js-plotly-plot")) figure.plot.replaceChildren();
+  const isNew = !figure.plot.classList.contains("js-plotly-plot");
+  if (isNew) figure.plot.replaceChildren();
   const height = isPrinting() ? printedHeight(drawn) : drawn.height;
   figure.plot.style.height = `${height}px`;
-  Plotly.react(figure.plot, drawn.data, fullLayout({...drawn, height}, context), CONFIG);
+  const data = [...drawn.data, ...ringsAround(drawn.data, state.get("decide.pick"), context.colours)];
+  Plotly.react(figure.plot, data, fullLayout({...drawn, height}, context), CONFIG);
+  if (isNew) listenToClicks(figure.plot);
+}
+
+/** Who is told the name at a point that was clicked.
+ * @type {(name: string) => void} */
+let tellChosen = () => {};
+
+/** @param {(name: string) => void} tell */
+export function onChosen(tell) {
+  tellChosen = tell;
+}
+
+/** @param {HTMLElement} plot */
+function listenToClicks(plot) {
+  /** @type {PlotlyElement} */ (plot).on("plotly_click", ({points: [point]}) => tellChosen(unsafe(nameAt(point.data, point.pointIndex))));
+}
+
+/** The combination that a point stands for, if it stands for one.
+ * @param {Trace} trace @param {number} i @returns {string} */
+function nameAt(trace, i) {
+  return String(trace.ids?.[i] ?? trace.y?.[i] ?? "");
+}
+
+/** Rings around the points of the combination that was chosen, in every figure.
+ * @param {Trace[]} traces @param {string} chosen @param {Colours} colours @returns {Trace[]} */
+function ringsAround(traces, chosen, colours) {
+  if (!chosen) return [];
+  const name = safe(chosen);
+  const dots = traces.filter(trace => trace.type === "scatter" && String(trace.mode).includes("markers"));
+  const found = dots.flatMap(trace => [...(trace.y ?? [])].flatMap((y, i) => (nameAt(trace, i) === name ? [{x: trace.x[i], y}] : [])));
+  if (!found.length) return [];
+  return [{type: "scatter", mode: "markers", name: "not in the table", showlegend: false, hoverinfo: "skip", x: found.map(each => each.x),
+    y: found.map(each => each.y), marker: {symbol: "circle-open", size: 17, color: colours.ink, line: {width: 2.5, color: colours.ink}}}];
 }
 
 /** @param {PlotDrawn} drawn */
@@ -238,6 +273,8 @@ const OF_THE_TABLE = ["sort", "columns", "rows"];
  * @param {string} key @param {Figure} figure */
 function concerns(key, figure) {
   if (OF_THE_TABLE.includes(key)) return false;
+  if (key === "decide.pick") return true;
+  if (key.startsWith("decide.")) return Boolean(figure.showsAnswer);
   if (key === "q" || CODES.some(code => code === key)) return !figure.ignoresFilter;
   return !key.includes(".") || key.startsWith(`${figure.id}.`);
 }

@@ -49,9 +49,10 @@ export function buildToolbar() {
       make("output", {id: "filter-count", for: "filter"}),
       clear, buildChips(), themes),
     make("p", {class: "hint", id: "filter-help"}),
-    make("nav", {"aria-label": "Sections", id: "contents"}, sections.map(section =>
+    make("nav", {"aria-label": "Sections", id: "contents"}, sections.flatMap(section => [
+      section.level === "Explore" ? make("span", {class: "level-name", "aria-hidden": "true"}, "Explore") : "",
       make("a", {href: `#${section.id}`, onclick: (/** @type {Event} */ event) => { event.preventDefault(); goTo(section.id); }},
-        section.title))));
+        section.title)])));
   return {filter, clear, themes};
 }
 
@@ -103,6 +104,7 @@ function toggleChip(code, name) {
 export function buildSections() {
   const main = elementOf("sections");
   for (const section of sections) {
+    if (section.level) main.append(make("p", {class: "level"}, section.level));
     main.append(section.element);
     section.build(section.body);
   }
@@ -143,7 +145,7 @@ export function updateToolbar({filter, clear, themes}) {
 function updateChips(entry) {
   let count = 0;
   /** @type {NodeListOf<HTMLElement>} */
-  const chips = document.querySelectorAll(".chip");
+  const chips = document.querySelectorAll(".chip[data-code]");
   for (const chip of chips) {
     const [code, name] = [/** @type {Code} */ (chip.dataset.code), chip.dataset.name ?? ""];
     const pressed = chosenChips(code).has(name);

@@ -1,5 +1,7 @@
-/* Speed against quality, or any two measures, with the Pareto front. */
+/* Speed against quality, or any two measures, with the answer and the Pareto front. */
 
+import {measuredAs} from "./candidates.js";
+import {rankedForPurpose} from "./purposes.js";
 import {safe} from "../basis/elements.js";
 import {measureNamed, measureOf} from "../basis/entries.js";
 import {duration, isKnown, shown} from "../basis/numbers.js";
@@ -17,10 +19,9 @@ function firstMeasure(entry, keys) {
 }
 
 /** @type {FigureSpec} */
-export const PARETO = {
-  id: "pareto", title: "Speed against quality", wide: true,
-  read: "Each point is a combination, by its means over the successful pairs. No combination is better in both measures than a "
-    + "point on the line. Hollow points failed too often to be on it.",
+export const SPEED_QUALITY = {
+  id: "pareto", title: "Speed against quality", showsAnswer: true,
+  read: "The star is the answer. Nothing is better in both measures than a point on the line; hollow points failed too often.",
   controls: [
     {name: "x", label: "Horizontal", options: measureOptions,
       fallback: entry => entry.validation.pareto.criteria[0] ?? firstMeasure(entry, SPEEDS)},
@@ -37,17 +38,48 @@ export const PARETO = {
     const front = paretoFront(sound, x, y);
     const step = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
       x: front.map(a => x.values[a]), y: front.map(a => y.values[a]), line: {color: colours.line, width: 1.5}};
+    const winner = winnerIn(entry, drawn);
+    const stars = winner === null ? [] : [starOf(entry, winner, x, y, colours)];
     return {
-      data: [step, ...pointsByMethod(entry, drawn, option("colour"), x, y, theme)],
-      height: narrow ? 480 : 560,
+      data: [step, ...pointsByMethod(entry, drawn, option("colour"), x, y, theme), ...stars],
+      height: narrow ? 400 : 455,
       layout: {
         ...scatterFrame(measureAxis(x, drawn), measureAxis(y, drawn), narrow),
-        annotations: front.length ? frontLabels(context, drawn, front, x, y) : [],
+        annotations: [...frontLabels(context, drawn, front.filter(a => a !== winner), x, y),
+          ...(winner === null ? [] : [labelOf(context, drawn, winner, x, y)])],
       },
       note: `Best trade-offs: ${front.map(a => entry.combinations[a]).join(", ")}.`,
     };
   },
 };
+
+/** The answer, or the same features with another matcher, where it is among the points.
+ * @param {Entry} entry @param {number[]} drawn */
+function winnerIn(entry, drawn) {
+  const [first] = rankedForPurpose();
+  const a = first ? measuredAs(entry, first.name) : null;
+  return a !== null && drawn.includes(a) ? a : null;
+}
+
+/** @param {Entry} entry @param {number} a @param {Measure} x @param {Measure} y @param {Colours} colours @returns {Trace} */
+function starOf(entry, a, x, y, colours) {
+  return {type: "scatter", mode: "markers", name: "not in the table", showlegend: false, x: [x.values[a]], y: [y.values[a]],
+    ids: [safe(entry.combinations[a])], hovertext: [`<b>${safe(entry.combinations[a])}</b><br>the answer`], hoverinfo: "text",
+    marker: {symbol: "star", size: 19, color: colours.ink, line: {width: 1.5, color: colours.surface}}};
+}
+
+/** @param {FigureContext} context @param {number[]} drawn @param {number} a @param {Measure} x @param {Measure} y */
+function labelOf({entry, colours}, drawn, a, x, y) {
+  const place = placeOn(drawn);
+  return {x: place(x, a), y: place(y, a), text: `<b>${safe(entry.combinations[a])}</b>`, showarrow: true, arrowhead: 0, arrowwidth: 1,
+    arrowcolor: colours.ink, ax: 40, ay: 34, font: {size: 12, color: colours.ink}, bgcolor: colours.surface};
+}
+
+/** Places on the axes, logarithmic or not.
+ * @param {number[]} drawn @returns {(measure: Measure, a: number) => number} */
+function placeOn(drawn) {
+  return (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number)(Number(measure.values[a]));
+}
 
 /** Times and counts that span more than a factor of 10 get a logarithmic axis.
  * @param {Measure} measure @param {number[]} rows @returns {Axis} */
@@ -82,8 +114,8 @@ function paretoFront(rows, x, y) {
 /** Names of a few points on the front, far enough apart not to overlap.
  * @param {FigureContext} context @param {number[]} drawn @param {number[]} front @param {Measure} x @param {Measure} y */
 function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
-  /** @type {(measure: Measure, a: number) => number} */
-  const place = (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number)(Number(measure.values[a]));
+  if (!front.length) return [];
+  const place = placeOn(drawn);
   const [spanX, spanY] = [x, y].map(measure => spanOf(drawn.map(a => place(measure, a))));
   /** @type {(a: number, b: number) => boolean} */
   const near = (a, b) => Math.abs(place(x, a) - place(x, b)) / (spanX[1] - spanX[0]) * width < 170
