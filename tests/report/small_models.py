@@ -98,5 +98,6 @@ def _cloud(entry: str, name: str, seed: int) -> dict[str, Any]:
         "centres": _floats(centres),
         "rotations": _floats(np.broadcast_to(np.diag([1, -1, -1]), (cameras, 3, 3))),
         "positions": _floats(centres + 0.5),
+        "names": [f"{place}.png" for place in range(len(centres))],
         "view": [900.0, 1000.0, 665.0],
     }

@@ -140,6 +140,7 @@ def _packed(cloud: Cloud) -> dict[str, Any]:
         "centres": packed_floats(cloud.centres),
         "rotations": packed_floats(cloud.rotations),
         "positions": packed_floats(cloud.positions),
+        "names": [str(name) for name in cloud.names],
         "view": cloud.view.tolist(),
     }
 

@@ -15,6 +15,7 @@ from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import StageError, unless_failed
 from aerocues.pipeline.pair_stages import PairStages, matched_points
+from aerocues.report.right_matches import RightMatches
 
 Floats = NDArray[np.float32]
 
@@ -33,6 +34,10 @@ class DrawnMatches:
         None of them where no model was estimated.
     verified : bool
         Whether a model was looked for.
+    right : (M,) bool or None
+        Whether each match is right within 3 px; None where nothing tells.
+    judge : str or None
+        What tells: the ground truth or the reference of the pair.
     """
 
     keypoints_1: Floats
@@ -40,6 +45,8 @@ class DrawnMatches:
     matches: Floats
     inliers: NDArray[np.bool_]
     verified: bool
+    right: NDArray[np.bool_] | None = None
+    judge: str | None = None
 
     def counts(self) -> dict[str, int | None]:
         """The counts of a measured row."""
@@ -65,6 +72,7 @@ class Drawer:
         self._dataset = context.dataset
         self._features = FeatureSource(context.methods, protocol, clock)
         self._stages = PairStages(context.methods, protocol, context.dataset.geometry, clock)
+        self._judge = RightMatches(context)
         self._pair: Pair | None = None
 
     def draw(self, pair_index: int, combination: Combination) -> DrawnMatches | str:
@@ -83,7 +91,7 @@ class Drawer:
         try:
             first = self._describe(combination, pair.image_1)
             second = self._describe(combination, pair.image_2)
-            return self._match(combination, first, second)
+            return self._match(pair, combination, first, second)
         except StageError as failure:
             return failure.message or f"{failure.status.replace('_', ' ')} on this pair"
 
@@ -98,15 +106,20 @@ class Drawer:
             raise StageError("no_descriptors", None)
         return features
 
-    def _match(self, combination: Combination, first: Features, second: Features) -> DrawnMatches:
+    def _match(
+        self, pair: Pair, combination: Combination, first: Features, second: Features
+    ) -> DrawnMatches:
         images = "this pair"
         matches, _ = self._stages.match(combination, (first, second), images)
         points, order = matched_points(first, second, matches)
         verdict = self._stages.verify(combination, points, order, images)
+        right, judge = self._judge.judged(pair, *points)
         return DrawnMatches(
             keypoints_1=first.keypoints.xy,
             keypoints_2=second.keypoints.xy,
             matches=np.hstack(points),
             inliers=np.zeros(len(matches), bool) if verdict is None else verdict.model.inliers,
             verified=verdict is not None,
+            right=right,
+            judge=judge,
         )

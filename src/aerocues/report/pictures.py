@@ -123,6 +123,8 @@ def _picture(found: ReportEntry, process: DrawingProcess, choice: Choice) -> dic
         "keypoints_every": every_k,
         "matches": packed_floats(drawn.matches[::every_m]),
         "inlier": packed_bytes(drawn.inliers[::every_m]),
+        "right": None if drawn.right is None else packed_bytes(drawn.right[::every_m]),
+        "judge": drawn.judge,
         "matches_every": every_m,
         "why": choice.why,
         "role": choice.role,

@@ -15,6 +15,7 @@ from aerocues.methods.preset_files import recorded_preset
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.protocol import ChanceTest, MeasurementProtocol, Verification
 from aerocues.report.entry import ReportEntry
+from aerocues.results.store import REFERENCES
 
 HINT = "name the place where they are now as `images`, such as oxford:DIR"
 
@@ -45,6 +46,7 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
         protocol = _protocol(settings["protocol"])
     except (KeyError, TypeError) as error:
         raise DatasetError(f"run.json does not say how they were measured ({error})") from error
+    references = found.results.folder / REFERENCES
     return Context(
         dataset=_with_pairs(_dataset(found, measured, moved), found.pairs()),
         methods=protocol.limit.limited(installed_methods().with_preset(preset)),
@@ -52,6 +54,7 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
         protocol=protocol,
         settings_key=str(settings["settings_key"]),
         machine=found.entry.machine,
+        references=references.absolute() if references.is_dir() else None,
     )
 
 
@@ -88,9 +91,11 @@ def _missing(dataset: Dataset, found: ReportEntry) -> str | None:
 
 def _with_pairs(dataset: Dataset, pairs: Sequence[Mapping[str, Any]]) -> Dataset:
     """The dataset with exactly the measured pairs."""
-    made = [
-        Pair(pair["pair"], pair["image_1"], pair["image_2"], pair["sequence"]) for pair in pairs
-    ]
+    known = {(pair.image_1, pair.image_2): pair.homography for pair in dataset.pairs}
+    made = []
+    for pair in pairs:
+        names = pair["image_1"], pair["image_2"]
+        made.append(Pair(pair["pair"], *names, pair["sequence"], known.get(names)))
     return replace(dataset, pairs=made)
 
 

@@ -288,6 +288,8 @@ interface CloudDrawing {
   pixels: Uint32Array;
   turn: Turn;
   stage: Stage3D;
+  /** Of the points, 1 by default. */
+  size: number;
   /** Whether cameras and their true places are drawn. */
   cameras: boolean;
   truth: boolean;

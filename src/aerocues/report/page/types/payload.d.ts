@@ -329,6 +329,9 @@ interface Picture {
   matches: Packed;
   /** 1 for an inlier. */
   inlier: Packed;
+  /** 1 for a match that is right within 3 px by the judge; null where nothing tells. */
+  right: Packed | null;
+  judge: string | null;
   matches_every: number;
   why: string;
   role: string | null;
@@ -354,6 +357,8 @@ interface Cloud {
   /** Nine numbers a camera, by rows. */
   rotations: Packed;
   positions: Packed;
+  /** Of the images of the cameras. */
+  names: string[];
   /** Focal length, width and height of the camera in pixels. */
   view: [number, number, number];
 }

@@ -3,6 +3,7 @@
    name, or a part exactly where there is one of that name (`gftt` is not GFTT_H). */
 
 import {CODES, entries, ranked, remember} from "./entries.js";
+import {hasLimits, LIMITS, withinLimits} from "./limits.js";
 import {state} from "./state.js";
 
 const knownParts = new Set(entries.flatMap(entry =>
@@ -80,20 +81,20 @@ export function unknownWords() {
 }
 
 export function isFiltered() {
-  return Boolean(state.get("q").trim()) || CODES.some(code => chosenChips(code).size > 0);
+  return Boolean(state.get("q").trim()) || CODES.some(code => chosenChips(code).size > 0) || hasLimits();
 }
 
 const filtered = {key: "", entries: /** @type {Map<Entry, number[]>} */ (new Map())};
 
-/** Positions of the combinations that pass the filter, by rank.
+/** Positions of the combinations that pass the filter and the limits, by rank.
  * @param {Entry} entry */
 export function shownIn(entry) {
-  const key = JSON.stringify(["q", ...CODES].map(name => state.get(name)));
+  const key = JSON.stringify(["q", ...CODES, ...LIMITS].map(name => state.get(name)));
   if (filtered.key !== key) Object.assign(filtered, {key, entries: new Map()});
   const known = filtered.entries.get(entry);
   if (known) return known;
   const pass = passing(entry);
-  const found = ranked(entry).filter(a => pass[a]);
+  const found = withinLimits(entry, ranked(entry).filter(a => pass[a]));
   filtered.entries.set(entry, found);
   return found;
 }

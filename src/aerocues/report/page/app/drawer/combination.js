@@ -19,7 +19,7 @@ export function openCombination(name) {
   const pinned = state.get("decide.pin");
   state.set({"decide.pick": name});
   const names = pinned && pinned !== name && isHere(pinned) ? [pinned, name] : [name];
-  showDrawer(names.join(" and "), make("div", {class: `compared of-${names.length}`}, names.map(each => details(each, name))));
+  showDrawer(names.join(" and "), make("div", {class: `compared of-${names.length}`}, names.map(each => details(each, name, names.length > 1))));
 }
 
 /** @param {string} name */
@@ -28,8 +28,8 @@ export function isHere(name) {
   return combinations.includes(name) || (models?.combinations.includes(name) ?? false);
 }
 
-/** @param {string} name @param {string} latest */
-function details(name, latest) {
+/** @param {string} name @param {string} latest @param {boolean} named  Whether its name stands above it. */
+function details(name, latest, named) {
   const entry = currentEntry();
   const a = entry.combinations.indexOf(name);
   const isPinned = state.get("decide.pin") === name;
@@ -37,7 +37,7 @@ function details(name, latest) {
     state.set({"decide.pin": isPinned ? null : name});
     openCombination(latest);
   }}, isPinned ? "Unpin" : "Pin to compare");
-  return make("article", {class: "details"}, make("h3", {}, name), pin,
+  return make("article", {class: "details"}, named ? make("h3", {}, name) : null, pin,
     a < 0 ? make("p", {class: "note"}, "Its pairs were not measured one by one.") : figuresList(figuresOf(entry, a)),
     a < 0 ? null : stagesOf(entry, a), a < 0 ? null : weakestPairs(entry, a), modelOf(entry, name), picturesOf(entry, name));
 }

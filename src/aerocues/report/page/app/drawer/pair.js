@@ -21,7 +21,7 @@ export function openPair(position) {
     closeDrawer();
     state.set({"picture.pair": String(position)});
     document.getElementById("pictures")?.scrollIntoView({block: "start"});
-  }}, "Show its matches") : make("p", {class: "note"}, "No picture of its matches is in this page; `--pictures` draws more.");
+  }}, "Show its matches") : make("p", {class: "note"}, "No picture of its matches is in this page; the option --pictures draws more.");
   showDrawer(pairLabel(entry, position), [
     make("div", {class: "two-images"}, [pair.image_1, pair.image_2].map(name => pictureOf(entry, name))), show, tableOfPair(entry, position)]);
 }

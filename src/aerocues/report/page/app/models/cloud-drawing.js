@@ -35,13 +35,13 @@ export function drawCloud(pen, view, width, height, density) {
 }
 
 /** @param {CanvasRenderingContext2D} pen @param {CloudDrawing} view @param {Projection} project @param {number} width @param {number} height @param {number} density */
-function drawPoints(pen, {cloud, pixels: colours, turn, stage, ground}, project, width, height, density) {
+function drawPoints(pen, {cloud, pixels: colours, turn, stage, size: wanted, ground}, project, width, height, density) {
   const {pen: hidden, image, pixels, depth} = buffersFor(width, height);
   pixels.fill(ground);
   depth.fill(Infinity);
   const points = arrayOf(cloud.points);
   const spot = [0, 0, 0];
-  const size = density * (1.1 + 0.5 * Math.sqrt(turn.zoom)) * Math.min(1.6, Math.max(0.8, width / density / 480));
+  const size = wanted * density * (1.1 + 0.5 * Math.sqrt(turn.zoom)) * Math.min(1.6, Math.max(0.8, width / density / 480));
   for (let i = 0; i < colours.length; i += 1) {
     if (!project(points[3 * i], points[3 * i + 1], points[3 * i + 2], spot)) continue;
     const side = Math.max(1, Math.round(size * EYE * stage.radius / spot[2]));

@@ -9,9 +9,10 @@ import {currentEntry} from "../basis/state.js";
 import {drawCloud} from "./cloud-drawing.js";
 import {FRONT, pixelOf} from "./cloud-space.js";
 
-/** @type {{turn: Turn, playing: boolean, stage: Stage3D | null, controls: Record<string, Control>, layers: Layer[],
+/** `flight` is the ball around what a camera sees, while one was flown to; `size` of the points is relative.
+ * @type {{turn: Turn, playing: boolean, stage: Stage3D | null, flight: Stage3D | null, size: number, controls: Record<string, Control>, layers: Layer[],
  *   panels: CloudPanel[], play: HTMLElement, legend: HTMLElement}} */
-export const cloudView = {turn: {...FRONT}, playing: false, stage: null, controls: {}, layers: [], panels: [],
+export const cloudView = {turn: {...FRONT}, playing: false, stage: null, flight: null, size: 1, controls: {}, layers: [], panels: [],
   play: make("button", {type: "button", class: "quiet", id: "turn-clouds", "aria-pressed": "false"}, "Turn"),
   legend: make("div", {class: "cloud-legend"})};
 
@@ -29,12 +30,12 @@ export function drawClouds() {
     const width = Math.floor(element.clientWidth) - 2 * parseFloat(getComputedStyle(element).paddingLeft);
     canvas.hidden = !cloud;
     if (!cloud || !pixels || width <= 0) continue;
-    const height = Math.round(Math.min(460, Math.max(280, width * 0.72)));
+    const height = document.fullscreenElement ? Math.max(240, window.innerHeight - 230) : Math.round(Math.min(460, Math.max(280, width * 0.72)));
     const density = Math.min(window.devicePixelRatio || 1, 2);
     const [wide, tall] = [width, height].map(size => Math.round(size * density));
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, {width: wide, height: tall});
     canvas.style.height = `${height}px`;
-    const view = {cloud, pixels, turn: cloudView.turn, stage: cloudView.stage, cameras, truth, colours, ground: pixelOf(colours.surface)};
+    const view = {cloud, pixels, turn: cloudView.turn, stage: cloudView.flight ?? cloudView.stage, size: cloudView.size, cameras, truth, colours, ground: pixelOf(colours.surface)};
     const pen = canvas.getContext("2d", {willReadFrequently: true});
     if (pen) drawCloud(pen, view, wide, tall, density);
     canvas.setAttribute("aria-label", `Cloud of ${cloud.combination}. ${cloudNote(cloud)}`);

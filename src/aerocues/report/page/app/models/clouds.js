@@ -8,6 +8,7 @@ import {currentFilter} from "../basis/filter.js";
 import {sentenceCase, shown} from "../basis/numbers.js";
 import {currentEntry} from "../basis/state.js";
 import {colourLimits, POINT_COLOURS, pointPixels, scaleColours, sortedKnown, stageOf} from "./cloud-space.js";
+import {buildCloudTools, refreshCloudTools} from "./cloud-tools.js";
 import {cloudNote, cloudsOf, cloudView, drawClouds} from "./cloud-view.js";
 import {modelColumns} from "./models-table.js";
 import {listenToTurns, setPlaying, turnBy} from "./turning.js";
@@ -59,7 +60,7 @@ export function buildClouds(parent) {
     make("p", {class: "read"}, "Both clouds are seen from the same viewpoint. Drag or use the arrow keys to turn, + and − to zoom, Home to reset. "
       + "A ring marks the true position of a camera, and a line connects it with its position in the model: long lines mean a bent model."),
     make("div", {class: "controls"}, [...Object.values(controls), ...layers].map(control => control.element), make("span", {class: "save"}, play, buttons)),
-    legend, make("div", {class: "panels"}, panels.map(panel => panel.element)));
+    ...buildCloudTools(parent), legend, make("div", {class: "panels"}, panels.map(panel => panel.element)));
 }
 
 /** @param {string} side @returns {CloudPanel} */
@@ -89,6 +90,7 @@ function updateClouds() {
     panel.words.replaceChildren(...cloudWords(panel.cloud));
     panel.note.textContent = cloudNote(panel.cloud);
   }
+  refreshCloudTools();
   colourClouds();
   drawClouds();
 }

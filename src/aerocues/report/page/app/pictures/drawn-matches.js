@@ -7,6 +7,7 @@ import {arrayOf, payload} from "../basis/payload.js";
 export const pictureView = {controls: {}, layers: [], panels: []};
 const INLIER = "#38c6ff";
 const OUTLIER = "#ff8a1f";
+const WRONG = "#ff3d9a";
 const KEYPOINT = "#ffe04a";
 const LEGIBLE_MATCHES = 150;
 /** @type {Map<string, Promise<HTMLImageElement>>} */
@@ -25,6 +26,17 @@ function loadImage(key) {
   });
   loadedImages.set(key, loading);
   return loading;
+}
+
+/* Kinds of matches. */
+const [OUTLIERS, RIGHT_INLIER, WRONG_INLIER] = [0, 1, 2];
+const COLOURS = [OUTLIER, INLIER, WRONG];
+
+/** The kind of each match; inliers are taken for right where nothing tells.
+ * @param {Picture} picture */
+function kindsOf(picture) {
+  const [inlier, right] = [arrayOf(picture.inlier), picture.right ? arrayOf(picture.right) : null];
+  return Array.from(inlier, (isInlier, i) => (isInlier ? (right && !right[i] ? WRONG_INLIER : RIGHT_INLIER) : OUTLIERS));
 }
 
 /** @typedef {ReturnType<typeof placement>} Placement */
@@ -83,10 +95,10 @@ function at(place, image, x, y) {
  * @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place */
 function drawLayers(pen, picture, place) {
   const words = [];
-  const [inliers, outliers, keypoints] = pictureView.layers.map(layer => layer.value());
+  const [inliers, wrong, outliers, keypoints] = pictureView.layers.map(layer => layer.value());
   if (keypoints) words.push(drawKeypoints(pen, picture, place));
-  const wanted = {1: inliers, 0: outliers};
-  if (wanted[0] || wanted[1]) words.push(drawMatches(pen, picture, place, wanted));
+  const wanted = {[RIGHT_INLIER]: inliers, [OUTLIERS]: outliers, [WRONG_INLIER]: wrong};
+  if (Object.values(wanted).includes(true)) words.push(drawMatches(pen, picture, place, wanted));
   return words.join(" ") || "No layer is selected.";
 }
 
@@ -110,22 +122,23 @@ function drawKeypoints(pen, picture, place) {
 
 /** @param {CanvasRenderingContext2D} pen @param {Picture} picture @param {Placement} place @param {Record<number, boolean>} wanted */
 function drawMatches(pen, picture, place, wanted) {
-  const [matches, inlier] = [arrayOf(picture.matches), arrayOf(picture.inlier)];
-  const indices = [...inlier.keys()].filter(i => wanted[inlier[i]]);
+  const [matches, kinds] = [arrayOf(picture.matches), kindsOf(picture)];
+  const indices = [...kinds.keys()].filter(i => wanted[kinds[i]]);
   const every = matchStep(indices.length);
   const drawn = indices.filter((_, i) => i % every === 0);
-  for (const kind of [0, 1]) {
-    pen.strokeStyle = kind ? INLIER : OUTLIER;
+  for (const kind of [OUTLIERS, RIGHT_INLIER, WRONG_INLIER]) {
+    pen.strokeStyle = COLOURS[kind];
     pen.fillStyle = pen.strokeStyle;
     pen.lineWidth = 1;
     pen.globalAlpha = drawn.length > 400 ? 0.5 : 0.8;
-    for (const i of drawn.filter(each => inlier[each] === kind)) drawMatch(pen, matches.subarray(4 * i, 4 * i + 4), place);
+    for (const i of drawn.filter(each => kinds[each] === kind)) drawMatch(pen, matches.subarray(4 * i, 4 * i + 4), place);
   }
   pen.globalAlpha = 1;
   const total = every * (picture.matches_every || 1);
-  const share = drawn.filter(i => inlier[i]).length;
+  const count = (/** @type {number} */ kind) => drawn.filter(i => kinds[i] === kind).length;
+  const wrong = picture.judge ? `, of which ${count(WRONG_INLIER)} are wrong by the ${picture.judge}` : "";
   return `${total > 1 ? `Every ${ordinal(total)} match is drawn` : "Every match is drawn"}: `
-    + `${counted(share, "inlier")}, ${counted(drawn.length - share, "outlier")}.`;
+    + `${counted(count(RIGHT_INLIER) + count(WRONG_INLIER), "inlier")}${wrong}, ${counted(count(OUTLIERS), "outlier")}.`;
 }
 
 /** Every n-th match as chosen; "auto" keeps few enough to see single matches.

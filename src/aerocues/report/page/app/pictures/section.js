@@ -15,7 +15,7 @@ export const PICTURES_SECTION = {
   id: "pictures",
   title: "Pictures",
   read: "The matches of two combinations on the same pair of images. Lines connect matched keypoints. Inliers agree with the "
-    + "estimated geometry, outliers do not.",
+    + "estimated geometry, outliers do not; some inliers are wrong by the ground truth or the reference of the pair.",
   available: entry => picturesOf(entry).length > 0,
   build(body) {
     buildPictures(body);
@@ -40,6 +40,7 @@ function picturesToShow(entry) {
 
 const LAYERS = [
   {key: "inliers", label: "Inliers", shown: true},
+  {key: "wrong", label: "Inliers, but wrong", shown: true},
   {key: "outliers", label: "Outliers", shown: true},
   {key: "keypoints", label: "Keypoints", shown: false},
 ];

@@ -60,7 +60,7 @@ export function layerControl(figureId, layer) {
 }
 
 /** @param {Option[]} options */
-function optionElements(options) {
+export function optionElements(options) {
   /** @type {Map<string, HTMLOptionElement[]>} */
   const groups = new Map();
   for (const option of options) {

@@ -5,6 +5,7 @@ import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
 import {announce, make, safe} from "../basis/elements.js";
 import {CODES} from "../basis/entries.js";
 import {shownIn} from "../basis/filter.js";
+import {LIMITS} from "../basis/limits.js";
 import {isKnown} from "../basis/numbers.js";
 import {bytesOf} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
@@ -275,7 +276,7 @@ function concerns(key, figure) {
   if (OF_THE_TABLE.includes(key)) return false;
   if (key === "decide.pick") return true;
   if (key.startsWith("decide.")) return Boolean(figure.showsAnswer);
-  if (key === "q" || CODES.some(code => code === key)) return !figure.ignoresFilter;
+  if (key === "q" || LIMITS.includes(key) || CODES.some(code => code === key)) return !figure.ignoresFilter;
   return !key.includes(".") || key.startsWith(`${figure.id}.`);
 }
 

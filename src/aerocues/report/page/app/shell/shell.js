@@ -4,9 +4,11 @@ import {themeName} from "../basis/colours.js";
 import {elementOf, make} from "../basis/elements.js";
 import {CODES, entries} from "../basis/entries.js";
 import {chosenChips, isFiltered, shownIn, unknownWords} from "../basis/filter.js";
+import {LIMITS} from "../basis/limits.js";
 import {listed} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
+import {buildLimits, updateLimits} from "./limits-panel.js";
 
 /** @type {Section[]} */
 const sections = [];
@@ -37,17 +39,19 @@ export function buildToolbar() {
     oninput: () => state.set({q: filter.value.trim() ? filter.value : null}),
   });
   const clear = make("button", {type: "button", class: "quiet", id: "filter-clear", onclick: () => {
-    state.set({q: null, ...Object.fromEntries(CODES.map(code => [code, null]))});
+    state.set({q: null, ...Object.fromEntries([...CODES, ...LIMITS].map(key => [key, null]))});
     filter.focus();
   }}, "Clear");
   const themes = make("button", {type: "button", class: "quiet", id: "theme", onclick: () =>
     state.set({theme: themeName() === "dark" ? "light" : "dark"})});
+  const limits = buildLimits();
+  closeByLeaving(limits);
   elementOf("toolbar").append(
     make("div", {class: "bar"},
       buildEntryChoice(),
       make("label", {class: "filter", for: "filter"}, make("span", {class: "word"}, "Filter"), filter),
       make("output", {id: "filter-count", for: "filter"}),
-      clear, buildChips(), themes),
+      clear, buildChips(), limits, themes),
     make("p", {class: "hint", id: "filter-help"}),
     make("nav", {"aria-label": "Sections", id: "contents"}, sections.flatMap(section => [
       section.level === "Explore" ? make("span", {class: "level-name", "aria-hidden": "true"}, "Explore") : "",
@@ -139,6 +143,7 @@ export function updateToolbar({filter, clear, themes}) {
   themes.textContent = themeName() === "dark" ? "Light" : "Dark";
   themes.setAttribute("aria-label", `Show in ${themeName() === "dark" ? "light" : "dark"} colours`);
   updateChips(entry);
+  updateLimits();
 }
 
 /** @param {Entry} entry */
