@@ -53,9 +53,9 @@ def test_the_page_is_used_by_keyboard(open_report: Open) -> None:
     assert "Combination" in str(opened.page.text_content("#announcer"))
     opened.page.focus("#methods-summary")
     opened.page.keyboard.press("Enter")
-    assert opened.page.locator(".methods .panel").is_visible()
+    assert opened.page.locator("#methods .panel").is_visible()
     opened.page.keyboard.press("Escape")
-    assert opened.page.locator(".methods .panel").is_hidden()
+    assert opened.page.locator("#methods .panel").is_hidden()
     opened.page.focus('#contents a[href="#method"]')
     opened.page.keyboard.press("Enter")
     assert opened.page.evaluate("document.activeElement.id") == "title-method"

@@ -1,4 +1,4 @@
-"""What the page opens, compares and limits: the drawer, limits beside the filter, tools of clouds."""
+"""What the page opens, compares and limits: drawer, limits beside the filter, tools of clouds."""
 
 from __future__ import annotations
 

@@ -193,6 +193,8 @@ interface FigureSpec {
   ignoresFilter?: boolean;
   /** Whether it shows combinations of all entries. */
   acrossEntries?: boolean;
+  /** Whether parts of it are buttons. */
+  isOperated?: boolean;
   /** Whether it shows the answer, or what was chosen. */
   showsAnswer?: boolean;
 }

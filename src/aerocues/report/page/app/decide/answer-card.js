@@ -43,7 +43,7 @@ function answer(entry, purpose) {
   return [
     make("p", {class: "lead"}, make("span", {class: "take"}, "Take "), make("strong", {}, nameOf(entry, first.name))),
     make("p", {class: "meaning"}, [filterWords(entry), `Best for: ${purpose.meaning(entry)}.`].filter(Boolean).join(" ")),
-    figuresList(reasons(entry, first)),
+    figuresList(reasons(entry, first, purpose)),
     make("p", {class: "sure"}, certainty(entry, purpose, ranked)),
     ...(purpose.key === "overall" ? equals(entry) : []),
     ...(weak ? [make("p", {class: "weak"}, weak)] : []),

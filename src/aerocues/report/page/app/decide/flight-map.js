@@ -35,7 +35,7 @@ function shownOnMap(entry) {
 
 /** @type {FigureSpec} */
 export const FLIGHT_MAP = {
-  id: "map", title: "The flight", showsAnswer: true,
+  id: "map", title: "The flight", showsAnswer: true, isOperated: true,
   read: "Images where they were taken, and measured pairs, brighter with more matches. Click a pair to see it.",
   available: entry => (mapOf(entry) ? true : "No map: the images are not one flight, or could not be opened again."),
   draw(context) {

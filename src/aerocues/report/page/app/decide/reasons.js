@@ -6,10 +6,14 @@ import {counted, duration, fixed, isKnown, labelOf, percent, sentenceCase, shown
 import {measuredAs, firstOf, RIGHT_MATCHES, SHARES_RIGHT} from "./candidates.js";
 import {raceOf} from "./purposes.js";
 
-/** @param {Entry} entry @param {Candidate} chosen @returns {([string, Content] | null)[]} */
-export function reasons(entry, chosen) {
+/* Of a model, where the purpose is another one. */
+const FEW = 2;
+
+/** @param {Entry} entry @param {Candidate} chosen @param {Purpose} purpose @returns {([string, Content] | null)[]} */
+export function reasons(entry, chosen, {key}) {
   const a = measuredAs(entry, chosen.name);
-  return [...reasonsOfModel(entry, chosen.m), ...(a === null ? [] : reasonsOfPairs(entry, a)), wholeFlight(entry, a)];
+  const modelled = reasonsOfModel(entry, chosen.m);
+  return [...(key === "model" || key === "race" ? modelled : modelled.slice(0, FEW)), ...(a === null ? [] : reasonsOfPairs(entry, a)), wholeFlight(entry, a)];
 }
 
 /** @param {Entry} entry @param {number | null} m @returns {([string, Content] | null)[]} */

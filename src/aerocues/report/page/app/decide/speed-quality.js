@@ -90,7 +90,7 @@ function measureAxis(measure, rows) {
   const title = safe(`${measure.label}${better}`);
   const timed = /seconds/.test(measure.key);
   if (!(timed || isCount(measure.key)) || low <= 0 || high / low < 10) return {title};
-  return {title, ...logAxis(values, timed ? duration : shown)};
+  return {title, tickangle: 0, ...logAxis(values, timed ? duration : shown)};
 }
 
 /** @param {string} name */

@@ -60,7 +60,7 @@ function figuresOf(entry, a) {
 function stagesOf({medians}, a) {
   const total = STAGES.reduce((sum, stage) => sum + Number(medians[stage][a] ?? 0), 0);
   if (!total) return null;
-  return make("div", {class: "stages"}, make("h4", {}, `Time: ${duration(medians.total[a])}`), STAGES.map(stage => {
+  return make("div", {class: "stages"}, make("h3", {}, `Time: ${duration(medians.total[a])}`), STAGES.map(stage => {
     const bar = make("span", {class: "bar-of-value", "aria-hidden": "true"});
     bar.style.setProperty("--share", String(Number(medians[stage][a] ?? 0) / total));
     return make("div", {class: "stage"}, make("span", {}, stage), bar, make("span", {class: "value"}, duration(medians[stage][a])));
@@ -84,7 +84,7 @@ function modelOf(entry, name) {
   if (m < 0) return null;
   const shownOnes = modelColumns(entry).filter(column => column.usual && !["combination", "place", "rank", "message"].includes(column.key));
   const cloud = payload.clouds.some(each => each.entry === entry.name && each.combination === name);
-  return make("div", {}, make("h4", {}, "Its model"), figuresList(shownOnes.map(column => [column.label, column.text(m)])),
+  return make("div", {}, make("h3", {}, "Its model"), figuresList(shownOnes.map(column => [column.label, column.text(m)])),
     cloud ? goButton("Show its cloud", {"cloud.left": name}, "clouds") : null);
 }
 

@@ -4,7 +4,7 @@ import {make, nodesOf} from "../basis/elements.js";
 
 const title = make("h2", {id: "drawer-title", tabindex: "-1"});
 const content = make("div", {class: "drawer-content"});
-const drawer = make("aside", {id: "drawer", role: "dialog", "aria-labelledby": "drawer-title", hidden: true},
+const drawer = make("div", {id: "drawer", role: "dialog", "aria-labelledby": "drawer-title", hidden: true},
   make("div", {class: "panel-title"}, title,
     make("button", {type: "button", class: "quiet", onclick: () => closeDrawer()}, "Close")), content);
 /** @type {HTMLElement | SVGElement | null} */

@@ -22,7 +22,7 @@ const touched = window.matchMedia("(pointer: coarse)");
 
 /** @param {HTMLElement} parent @param {FigureSpec} spec */
 export function addFigure(parent, spec) {
-  const plot = make("div", {class: "plot", role: "img", "aria-label": spec.title});
+  const plot = make("div", {class: "plot", role: spec.isOperated ? "group" : "img", "aria-label": spec.title});
   const note = make("p", {class: "note", hidden: true});
   const {controls: specs = [], ...rest} = spec;
   const controls = specs.map(control => selectControl(spec.id, control));
