@@ -20,7 +20,7 @@ def test_a_row_opens_and_is_compared_with_a_pinned_one(open_report: Open) -> Non
     opened.page.click("text=Pin to compare")
     opened.page.keyboard.press("Escape")
     opened.page.click(f'#ranking button[data-combination="{NAMES[4]}"]')
-    assert opened.page.locator("#drawer .details h3").all_inner_texts() == [NAMES[0], NAMES[4]]
+    assert opened.page.locator("#drawer .details > h3").all_inner_texts() == [NAMES[0], NAMES[4]]
     opened.page.click("#drawer .panel-title button")
     opened.figure("heat")
     opened.page.locator(f'#figure-heat [data-combination="{NAMES[1]}"]').click()
