@@ -117,6 +117,11 @@ def _print_joint(console: Console, joint: JointScores, top: int) -> None:
         f"significantly better in the second run: {better} of {len(frame)}; worse: {worse}"
         + (f"; not tested, for too few pairs: {untested}" if untested else "")
     )
+    if any("seconds" in name for name in joint.scores.table.criterion_names):
+        console.print(
+            "Times count here, and a machine is not equally fast in two runs: small differences "
+            "may be its load.\n--criteria without seconds leaves times out."
+        )
     print_title(console, "\ncriteria, means over the combinations")
     print_table(console, _criteria(joint.criteria()))
 

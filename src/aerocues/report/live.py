@@ -33,11 +33,17 @@ FOLLOW = """
 font:14px sans-serif;background:#14324a;color:#fff;z-index:9">live</div>
 <script>(() => {
   const line = document.getElementById("live"), made = %(made)d;
+  let touched = 0;
+  for (const kind of ["pointerdown", "keydown", "wheel"]) {
+    addEventListener(kind, () => { touched = Date.now(); }, {passive: true});
+  }
   const ask = async () => {
     try {
       const state = await (await fetch("state")).json();
+      // Whoever is reading is not disturbed.
+      const ready = state.made !== made && Date.now() - touched > 15000;
+      if (ready) { location.reload(); return; }
       line.textContent = state.told;
-      if (state.made !== made) { location.reload(); return; }
       setTimeout(ask, 2000);
     } catch {
       line.textContent = "The command has ended: this is the page as it was last. "
