@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import pytest
+
 from aerocues.methods.combination import Combination
-from aerocues.progress import Event
-from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress, summary
+from aerocues.processes.call import StageCall
+from aerocues.progress import Activity, Event
+from aerocues.reconstruction.reconstruction_progress import (
+    ReconstructionProgress,
+    share_of_model,
+    summary,
+)
 
 METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
 MADE = {
@@ -48,3 +55,20 @@ def test_events_count_what_is_there() -> None:
     ]
     assert [row["status"] for row in events[-1].rows] == ["ok"]
     assert events[-1].share == 0.5
+
+
+def test_processes_tell_how_far_their_models_are() -> None:
+    events: list[Event] = []
+    tell = ReconstructionProgress(events.append)
+    tell.planned(2, 0)
+    matching = StageCall("match", -1, "a and b", "ORB", "ORB", "ORB-ORB-HAM-BF", 9, 17)
+    assert matching.brief() == "match pair 9 of 17, ORB-ORB-HAM-BF"
+    # 8 of 17 pairs of the part between .35 and .6 of a model; the other one is being mapped.
+    mapping = StageCall("mapping", -1, "18 images", "ORB", "ORB", "ORB-ORB-HAM-BF")
+    assert mapping.brief() == "mapping ORB-ORB-HAM-BF on 18 images"
+    tell.watch([Activity(0, matching, 1.0), Activity(1, mapping, 1.0)])
+    assert events[-1].share == pytest.approx((0.47 + 0.8) / 2)
+    # A share does not fall, whatever a process turns to.
+    tell.watch([Activity(0, None, 0.0)])
+    assert events[-1].share == pytest.approx(0.635)
+    assert share_of_model(None) == 0.0

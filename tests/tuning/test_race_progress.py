@@ -51,7 +51,7 @@ def test_a_stage_that_has_time_goes_on_until_the_race_would_have_too_little() ->
     step = RaceProgress(None, 60.0, BEGAN, Slow(0.1)).preparing("setting thresholds", "detectors")
     for done in range(1, 15):
         step(done, 14)
-    late = RaceProgress(None, 10.0, BEGAN - 7.0, Slow(0.1))
+    late = RaceProgress(None, 10.0, BEGAN - 9.5, Slow(0.1))
     with pytest.raises(SelectionError, match="budget"):
         late.preparing("setting thresholds", "detectors")
 

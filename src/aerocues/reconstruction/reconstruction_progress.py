@@ -26,7 +26,7 @@ def share_of_model(call: StageCall | None) -> float:
     """How much of its model a process has done, 0 to 1.
 
     >>> share_of_model(StageCall("match", -1, "a and b", "ORB", number=9, total=17))
-    0.48
+    0.47
     """
     if call is None or call.stage not in SHARES:
         return 0.0

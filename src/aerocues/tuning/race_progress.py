@@ -10,8 +10,8 @@ from aerocues.progress import Activity, Progress, StageProgress
 from aerocues.tuning.race import Round
 from aerocues.tuning.session import budget_too_small
 
-# Share of the budget that may be spent before the race: less than half would be left for it.
-LATEST = 0.6
+# Share of the budget that may be spent before the race: less than a tenth answers nothing.
+LATEST = 0.9
 # Steps that tell the pace.
 FEWEST_DONE = 3
 
@@ -102,7 +102,7 @@ class RaceProgress:
 
     def _refuse_late(self, stage: str, to_go: float) -> None:
         spent = self._clock() - self._began
-        if self._strict and (spent > LATEST * self._budget or spent + to_go > self._budget):
+        if self._strict and spent + to_go > LATEST * self._budget:
             why = f"{stage} is not over before {spoken_seconds(spent + to_go)}"
             raise budget_too_small(self._budget, spent + to_go, why)
 
