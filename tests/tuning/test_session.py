@@ -169,6 +169,14 @@ def test_short_time_looks_at_fewer_pairs(
         sit(photos, tmp_path / "hardly", Machine(memory), budget=2.5)
 
 
+def test_what_was_spent_before_a_race_counts(tmp_path: Path) -> None:
+    journal = Journal.read(tmp_path, "race", 60.0)
+    # The survey took 45 s: the test of overlap gets its share of the 15 that are left.
+    assert Session(journal, began=100.0, clock=lambda: 145.0).spent == 45.0
+    journal.add(["a"], 3.0, 0.0, [])
+    assert Session(journal, began=100.0, clock=lambda: 145.0).spent == 0.0
+
+
 def test_a_journal_is_followed_as_long_as_the_same_is_asked_for(tmp_path: Path) -> None:
     journal = Journal.read(tmp_path, "race", 10.0)
     journal.add(["a", "b"], 3.0, 0.0, [])

@@ -43,10 +43,10 @@ class Session:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.budget = journal.budget
-        self.spent = 0.0
-        """Seconds so far, including those reserved for the end."""
         self._journal, self._watch, self._clock = journal, watch, clock
         self._began = (clock() if began is None else began) - journal.spent
+        self.spent = 0.0 if journal.steps else clock() - self._began
+        """Seconds so far, including those reserved for the end."""
 
     @property
     def given(self) -> frozenset[str]:
