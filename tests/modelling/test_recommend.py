@@ -41,6 +41,8 @@ def test_the_best_model_decides(landscape: Dataset, tmp_path: Path) -> None:
         ]
     )
     assert found.best == names[0]
+    told = found.facts()["final"]
+    assert (told["models"], told["images"], told["of"]) == (names, 9, 9)
     assert final.rows[0]["status"] == "ok"
     assert final.rows[0]["placed_images"] == 9
     # The models are there to be used, and in the results.

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from aerocues.datasets.dataset import Pair
+from aerocues.tuning.journal import recorded_answer
 from aerocues.tuning.representative import spread_pairs
 from tests.cli.conftest import Answer, Call
 from tests.cli.other_machine import slower_copy
@@ -48,6 +49,9 @@ def test_the_answer_says_what_how_sure_why_and_what_next(
     assert command in answer.out
     assert "pairs" in answer.err
     assert page.stat().st_size > 100_000
+    told = recorded_answer(output)
+    assert told is not None
+    assert (told["best"], told["combinations"]) == (best[1], 14)
 
     # The same race once more: nothing is measured, and the answer is the same.
     parts = sorted((output / "parts").iterdir())
