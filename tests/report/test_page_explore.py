@@ -70,13 +70,3 @@ def test_clouds_fly_to_a_camera_and_are_saved(open_report: Open, tmp_path: Path)
     lines = file.read_text().splitlines()
     assert lines[:3] == ["ply", "format ascii 1.0", "element vertex 200"]
     assert len(lines) == 200 + lines.index("end_header") + 1
-
-
-def test_inliers_that_are_wrong_are_counted(open_report: Open) -> None:
-    opened = open_report()
-    opened.page.locator("#pictures").scroll_into_view_if_needed()
-    opened.page.wait_for_function(
-        "document.querySelector('.panel-of-matches .note').textContent.includes('inliers')"
-    )
-    note = opened.page.locator(".panel-of-matches .note").first.inner_text()
-    assert "10 inliers, of which 5 are wrong by the reference, 10 outliers" in note
