@@ -76,7 +76,7 @@ def compare(
         ),
     ] = None,
 ) -> None:
-    """Compare rankings across datasets, and runs over the same images.
+    """Compare datasets, machines, or runs over the same images.
 
     Two runs over the same images, under two presets, versions or machines, are scored together,
     and every difference is tested.
