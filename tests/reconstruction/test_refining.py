@@ -20,6 +20,8 @@ from aerocues.reconstruction.protocol import ErrorLimit, ReconstructionProtocol
 from aerocues.reconstruction.refining import GrayImages, refine_scene
 from tests.reconstruction.scenes import Options
 
+pytestmark = pytest.mark.slow
+
 ORB = "ORB-ORB-HAM-BF"
 NOTHING = ("refinable_share", "refined_share", "refinement_shift", "refinement_gain")
 
@@ -34,7 +36,6 @@ def test_refined_keypoints_are_sharper(models: Models) -> None:
     assert orb["refinement_gain"] > 3
 
 
-@pytest.mark.slow
 def test_a_model_of_refined_keypoints_is_nearer_to_the_truth(
     models: Models, landscape: Dataset, quick: Options, empty: Path
 ) -> None:
@@ -49,7 +50,6 @@ def test_a_model_of_refined_keypoints_is_nearer_to_the_truth(
     assert after["position_rmse"] < before["position_rmse"]
 
 
-@pytest.mark.slow
 def test_the_thesis_takes_keypoints_as_they_are_unless_told(
     landscape: Dataset, quick: Options, empty: Path
 ) -> None:

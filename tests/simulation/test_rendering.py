@@ -16,6 +16,8 @@ from aerocues.simulation.scenes import build_scene, stage
 from aerocues.simulation.sensor import Sensor, develop
 from aerocues.simulation.surfaces import Material
 
+pytestmark = pytest.mark.slow
+
 CAMERA = pinhole(150, 100, 90.0)
 POSES = (Pose(0, 0, -60, -90, 0), Pose(-10, 5, -45, -60, 30), Pose(5, 0, -30, -25, 200, 10))
 
@@ -42,7 +44,6 @@ def cast(mesh: Mesh, origin: NDArray[np.float64], ray: NDArray[np.float64]) -> f
     return float(t[hit].min(initial=np.inf))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("pose", POSES)
 def test_depth_is_what_a_ray_caster_finds(suburb_stage: Stage, pose: Pose) -> None:
     depth = render(suburb_stage, CAMERA, pose).depth
@@ -83,7 +84,6 @@ def test_what_reaches_behind_the_camera_is_cut(suburb_stage: Stage) -> None:
     assert depth.min() > 0.2
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes() -> None:
     def picture() -> tuple[bytes, bytes]:
         scene = build_scene("suburb", seed=9, half=40.0)

@@ -12,6 +12,8 @@ from aerocues.simulation.scene import Scene
 from aerocues.simulation.scenes import SCENES, build_scene, stage
 from aerocues.simulation.sensor import Sensor, develop
 
+pytestmark = pytest.mark.slow
+
 CAMERA = pinhole(150, 100, 90.0)
 POSE = Pose(0, 0, -50, -90, 0)
 
