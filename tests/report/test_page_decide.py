@@ -97,7 +97,8 @@ def test_a_race_gives_its_own_answer_and_how_much_it_measured(
     entry = {**entry_of("images", seed=0, name="images"), "race": RACE}
     opened = open_report(file=written(frame_of([entry]), tmp_path / "race.html"))
     assert _taken(opened) == "KAZE-KAZE-L2-BF"
-    words = opened.page.inner_text(".sure")
+    assert "Most accurate: SIFT-SIFT-L2-BF" in opened.page.inner_text("#verdict")
+    words = opened.page.locator(".sure").first.inner_text()
     assert "12 of 466 combinations on up to 8 of 153 pairs" in words
     assert "ORB-ORB-HAM-BF led with a probability of 40" in words
     opened.page.click('[data-purpose="overall"]')

@@ -6,10 +6,11 @@ import {currentEntry, state} from "../basis/state.js";
 import {codeOf, commandOf, copyButton} from "./copies.js";
 import {openCombination} from "../drawer/combination.js";
 import {refreshSliders, weightSliders} from "./own-weights.js";
-import {currentPurpose, purposesOf, rankedForPurpose} from "./purposes.js";
+import {bestForOthers, currentPurpose, purposesOf, rankedForPurpose} from "./purposes.js";
+import {countsNote} from "../score/weights.js";
 import {certainty, filterWords, reasons, weakness} from "./reasons.js";
 
-const OTHERS = 5;
+const OTHERS = 4;
 const EQUALS_SHOWN = 30;
 const purposes = make("div", {class: "purposes", role: "group", "aria-label": "Best for"});
 const verdict = make("div", {id: "verdict", "aria-live": "polite"});
@@ -46,12 +47,24 @@ function answer(entry, purpose) {
     figuresList(reasons(entry, first, purpose)),
     make("p", {class: "sure"}, certainty(entry, purpose, ranked)),
     ...(purpose.key === "overall" ? equals(entry) : []),
+    ...(isGeneral(purpose) ? remarks(entry, first) : []),
     ...(weak ? [make("p", {class: "weak"}, weak)] : []),
     make("p", {class: "copies"}, copyButton("Copy command", commandOf(entry, first.name)), copyButton("Copy code", codeOf(entry, first.name)),
       make("button", {type: "button", class: "quiet", onclick: () => openCombination(first.name)}, "Details")),
     make("code", {class: "command", tabindex: "0"}, commandOf(entry, first.name)),
     others(entry, ranked),
   ];
+}
+
+/** Whether a score over everything decides, which may hide who is best in one thing.
+ * @param {Purpose} purpose */
+function isGeneral({key}) {
+  return key === "overall" || key === "race";
+}
+
+/** @param {Entry} entry @param {Candidate} first */
+function remarks(entry, first) {
+  return [bestForOthers(entry, first.name), countsNote(entry)].filter(Boolean).map(text => make("p", {class: "sure"}, text));
 }
 
 /** @param {Entry} entry @param {string} name */

@@ -54,6 +54,15 @@ export function rankedForPurpose() {
   return currentPurpose().rank(entry, shownIn(entry));
 }
 
+/** What is best for the purposes that a score may hide, where it is another combination.
+ * @param {Entry} entry @param {string} taken */
+export function bestForOthers(entry, taken) {
+  const winners = purposesOf(entry).filter(({key}) => ["model", "accuracy", "speed"].includes(key))
+    .map(({label, rank}) => ({label, best: rank(entry, shownIn(entry))[0]?.name}));
+  const others = winners.filter(({best}) => best && best !== taken);
+  return others.length ? `${others.map(({label, best}) => `${label}: ${best === entry.models?.baseline ? "COLMAP’s default" : best}`).join("; ")}.` : "";
+}
+
 /** Models first, as the final judged them, then the leaders of the race.
  * @param {Entry} entry */
 function rankByRace(entry) {
