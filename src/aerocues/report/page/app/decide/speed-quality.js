@@ -78,7 +78,13 @@ function labelOf({entry, colours}, drawn, a, x, y) {
 /** Places on the axes, logarithmic or not.
  * @param {number[]} drawn @returns {(measure: Measure, a: number) => number} */
 function placeOn(drawn) {
-  return (measure, a) => (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number)(Number(measure.values[a]));
+  /** @type {Map<Measure, (value: number) => number>} */
+  const scales = new Map();
+  return (measure, a) => {
+    const scale = scales.get(measure) ?? (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number);
+    scales.set(measure, scale);
+    return scale(Number(measure.values[a]));
+  };
 }
 
 /** Times and counts that span more than a factor of 10 get a logarithmic axis.

@@ -34,9 +34,11 @@ function logTicks(low, high) {
   /** @type {number[]} */
   const powers = [];
   for (let power = Math.floor(Math.log10(low)) - 1; power <= Math.ceil(Math.log10(high)); power += 1) powers.push(power);
-  const all = DIGITS.map(digits => powers.flatMap(power => digits.map(digit => Number(`${digit}e${power}`))));
-  const enough = (/** @type {number[]} */ ticks) => ticks.filter(tick => low <= tick && tick <= high).length >= FEWEST_TICKS;
-  return all.find(enough)?.filter(tick => low / 10 <= tick && tick <= high * 10) ?? [low];
+  for (const digits of DIGITS) {
+    const ticks = powers.flatMap(power => digits.map(digit => Number(`${digit}e${power}`))).filter(tick => low / 10 <= tick && tick <= high * 10);
+    if (ticks.filter(tick => low <= tick && tick <= high).length >= FEWEST_TICKS) return ticks;
+  }
+  return [low];
 }
 
 /** A logarithmic axis for these values, with formatted ticks.
