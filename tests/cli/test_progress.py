@@ -161,6 +161,24 @@ def test_plain_lines_tell_now_and_then_how_things_stand(capsys: pytest.CaptureFi
     ]
 
 
+def test_plain_lines_tell_which_pair_of_a_model_is_at_work(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    clock = Clock()
+    stage = StageProgress(PlainLines(clock=clock), "reconstructing", "models", total=2)
+    stage.tell()
+    for pair in range(1, 18):
+        clock.now += 5
+        name = "GFTT_H-TEBLID-HAM-EXACT"
+        call = StageCall("match", -1, "a and b", "GFTT_H", "TEBLID", name, pair, 17)
+        stage.tell(workers=(Activity(0, call, 1.0),), share=pair / 34)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == (
+        "0 of 2 models, about 2 min 30 s left; match pair 4 of 17, GFTT_H-TEBLID-HAM-EXACT"
+    )
+    assert len(lines) == 4
+
+
 def test_under_a_budget_a_line_comes_every_few_seconds(capsys: pytest.CaptureFixture[str]) -> None:
     clock = Clock()
     lines = PlainLines(clock=clock)

@@ -97,6 +97,12 @@ class Tally:
         share = f"{int(100 * event.done / event.total)} %"
         return f"{event.done:,} of {event.total:,} {event.unit} ({share}){ending}"
 
+    def shortly(self) -> str:
+        """``1 of 3 models, about 1 min 10 s left``."""
+        event, left = self.event, self.seconds_left()
+        ending = "" if left is None or left < 1 else f", about {spoken_seconds(left)} left"
+        return f"{event.done:,} of {event.total:,} {event.unit}{ending}"
+
     def stands(self) -> str:
         """How things stand, and what is left of the time that was given."""
         event = self.event
@@ -163,11 +169,13 @@ class PlainLines(Tally):
         )
         silent = self.clock() - self._line_time
         if begins or silent >= LONGEST_SILENCE or (moved and silent >= SECONDS_BETWEEN_LINES):
-            calls = (
-                () if moved or told else (each.call.brief() for each in event.workers if each.call)
-            )
-            stands = event.standing or self.progress()
-            self._say("; ".join(filter(None, (*told, stands, self.outcomes(), *calls))))
+            calls = [each.call for each in event.workers if each.call]
+            stands, doing = event.standing or self.progress(), [call.brief() for call in calls]
+            if not told and any(call.total for call in calls):
+                stands, doing = self.shortly(), doing[:1]
+            elif moved or told:
+                doing = []
+            self._say("; ".join(filter(None, (*told, stands, self.outcomes(), *doing))))
 
     def _say_briefly(self) -> None:
         """How things stand, and what workers do as far as a line of 80 columns has room for it."""
@@ -178,7 +186,8 @@ class PlainLines(Tally):
         self._say(line)
 
     def _share(self) -> float:
-        return self.event.done / self.event.total if self.event.total else 0.0
+        event = self.event
+        return max(event.share, event.done / event.total if event.total else 0.0)
 
     def _remember(self) -> None:
         self._line_time, self._line_share = self.clock(), self._share()
