@@ -52,7 +52,8 @@ class CombinationModel(ModelMaker):
         if failure := without_features({n: len(k) for n, k in matched.keypoints.items()}):
             return failure
         pairs = self.timed(
-            "verification", lambda: linked_pairs(matched, self.scene, self.combination)
+            "verification",
+            lambda: linked_pairs(matched, self.scene, self.combination, self.announce),
         )
         self.row["linked_pairs"] = len(pairs)
         matched = self._refined(matched, pairs)

@@ -32,8 +32,9 @@ class ReconstructionLimits:
     workers : int
         Number of processes.
     seconds : float
-        Limit of the CPU seconds of each of these: features of one image, matches of one pair,
-        verification, mapping. Also the limit of the wall seconds that one of them may be idle.
+        Limit of the CPU seconds of each of these: features of one image, matches or chance test of
+        one pair, verification, mapping. Also the limit of the wall seconds that one of them may be
+        idle.
     memory_limit_mb : int
         Memory of one process.
     deadline : float

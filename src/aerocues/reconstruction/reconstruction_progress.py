@@ -12,11 +12,12 @@ from aerocues.results.metrics import Row
 
 # Where each stage of a model begins and ends, as shares of its time: rough, for the time left.
 SHARES = {
-    "detect": (0.0, 0.35),
-    "describe": (0.0, 0.35),
-    "match": (0.35, 0.6),
-    "verification": (0.6, 0.8),
-    "refinement": (0.65, 0.8),
+    "detect": (0.0, 0.25),
+    "describe": (0.0, 0.25),
+    "match": (0.25, 0.45),
+    "verification": (0.45, 0.75),
+    "verify": (0.45, 0.75),
+    "refinement": (0.75, 0.8),
     "mapping": (0.8, 0.97),
     "judging": (0.97, 1.0),
 }
@@ -26,7 +27,7 @@ def share_of_model(call: StageCall | None) -> float:
     """How much of its model a process has done, 0 to 1.
 
     >>> share_of_model(StageCall("match", -1, "a and b", "ORB", number=9, total=17))
-    0.47
+    0.34
     """
     if call is None or call.stage not in SHARES:
         return 0.0

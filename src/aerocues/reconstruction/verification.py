@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.feature_source import Announce, silent
+from aerocues.pipeline.pair_stages import stage_call
 from aerocues.pipeline.verification import Verdict, Verifier
 from aerocues.reconstruction.feature_size import features_scale
 from aerocues.reconstruction.matched_scene import MatchedScene, Names
@@ -17,7 +20,10 @@ from aerocues.reconstruction.scene import Scene
 
 
 def linked_pairs(
-    matched: MatchedScene, scene: Scene, combination: Combination
+    matched: MatchedScene,
+    scene: Scene,
+    combination: Combination,
+    announce: Announce = silent,
 ) -> dict[Names, NDArray[np.bool_]]:
     """The pairs whose matches beat chance, and which of them agree with the geometry, (M,) bool.
 
@@ -32,7 +38,11 @@ def linked_pairs(
     scale = features_scale(scene.dataset.images[0], scene.protocol.features_width)
     measurement = measurement.with_threshold(measurement.threshold(combination) * scale)
     verifier = Verifier(measurement, "epipolar", Clock(measurement.seed))
-    verdicts = {names: _verdict(verifier, matched, names) for names in enough}
+    verdicts = {}
+    for number, names in enumerate(enough, start=1):
+        call = stage_call("verify", combination, " and ".join(names))
+        announce(replace(call, number=number, total=len(enough)))
+        verdicts[names] = _verdict(verifier, matched, names)
     return {
         names: verdict.model.inliers
         for names, verdict in verdicts.items()
