@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import polars as pl
 import pytest
 
 import aerocues
@@ -50,6 +51,9 @@ def test_factors_come_from_the_same_rows_on_two_machines(finished: Path, tmp_pat
         assert list(stage.values()) == pytest.approx([SLOWER] * len(stage))
     with pytest.raises(ScoreError, match="detect"):
         device_factors(here, there.clear())
+    totals_alone = there.with_columns(match_seconds=pl.lit(None, pl.Float64))
+    with pytest.raises(ScoreError, match="match"):
+        device_factors(here, totals_alone)
 
 
 @pytest.mark.parametrize(

@@ -123,10 +123,7 @@ def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[
     for stage in STAGES[:-1]:
         columns = [*stage.columns, *(f"{name}_of_second" for name in stage.columns)]
         if joined.is_empty() or not set(columns) <= set(joined.columns):
-            raise ScoreError(
-                f"the two results share no row with times of the stage {stage.name}; measure the "
-                "same dataset with the same combinations on both machines"
-            )
+            raise _lacks_times(stage)
         here = pl.sum_horizontal(pl.col(stage.columns), ignore_nulls=False)
         there = pl.sum_horizontal(
             pl.col(f"{name}_of_second" for name in stage.columns), ignore_nulls=False
@@ -135,7 +132,16 @@ def device_factors(first: pl.DataFrame, second: pl.DataFrame) -> dict[str, dict[
         ratios = joined.select(method.alias("method"), (there / here).log().alias("ratio")).filter(
             pl.col("ratio").is_finite()
         )
+        if ratios.is_empty():  # as in tables of totals alone
+            raise _lacks_times(stage)
         by_method = ratios.group_by("method").agg(pl.col("ratio").mean().exp()).sort("method")
         whole = float(np.exp(ratios["ratio"].to_numpy().mean()))
         factors[stage.name] = {"*": whole, **dict(by_method.iter_rows())}
     return factors
+
+
+def _lacks_times(stage: Stage) -> ScoreError:
+    return ScoreError(
+        f"the two results share no row with times of the stage {stage.name}; measure the same "
+        "dataset with the same combinations on both machines"
+    )
