@@ -99,3 +99,12 @@ export function isGroundTruth(name) {
 export function sentenceCase(text) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
+
+/**
+ * The least and the greatest of some numbers: "3 to 7", or "5" where they are equal.
+ * @param {number[]} numbers
+ */
+export function span(numbers) {
+  const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
+  return low === high ? `${low}` : `${low} to ${high}`;
+}

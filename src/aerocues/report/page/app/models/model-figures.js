@@ -4,7 +4,7 @@ import {seriesStyle, THEMES} from "../basis/colours.js";
 import {safe} from "../basis/elements.js";
 import {CODES} from "../basis/entries.js";
 import {currentFilter} from "../basis/filter.js";
-import {counted, fixed, isKnown, labelOf, sentenceCase} from "../basis/numbers.js";
+import {counted, fixed, isKnown, labelOf, sentenceCase, span} from "../basis/numbers.js";
 import {spearman} from "../basis/statistics.js";
 import {modelColumn, modelsOf, shownModels} from "./models-table.js";
 import {categoryAxis, logAxis} from "../shell/axes.js";
@@ -77,7 +77,7 @@ export const OUTCOME_MATRIX = {
     return {
       ...matrixFigure({x: found.outcomes.map(labelOf), y: found.features.map(labelOf), z: spearmans ? found.spearman : found.pearson, theme, narrow,
         what: spearmans ? "Spearman" : "Pearson"}),
-      note: `Over ${Math.min(...numbers)} to ${Math.max(...numbers)} combinations; the filter does not apply.`,
+      note: `Over ${span(numbers)} combinations; the filter does not apply.`,
     };
   },
 };

@@ -5,7 +5,7 @@ import {saveCsv} from "../basis/downloads.js";
 import {make, plainTable, safe} from "../basis/elements.js";
 import {entries} from "../basis/entries.js";
 import {shownIn} from "../basis/filter.js";
-import {fixed, isKnown, NONE, shown} from "../basis/numbers.js";
+import {fixed, isKnown, NONE, shown, span} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {scaleControl} from "../shell/controls.js";
 import {lowEnd, matrixFigure} from "../shell/matrix.js";
@@ -24,8 +24,7 @@ export const RANKINGS_MATRIX = {
     const z = payload.comparison[option("of") === "kendall" ? "kendall" : "spearman"];
     const figure = matrixFigure({x: labels, y: labels, z, theme, narrow, what: option("of"), low: lowEnd(z)});
     const numbers = shared.flatMap((row, i) => row.filter((_, j) => j > i));
-    const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
-    return {...figure, note: `Over ${low === high ? low : `${low} to ${high}`} shared combinations.`};
+    return {...figure, note: `Over ${span(numbers)} shared combinations.`};
   },
 };
 

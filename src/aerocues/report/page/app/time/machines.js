@@ -37,7 +37,7 @@ export const MACHINES = {
       layout: {showlegend: false, hovermode: "closest", yaxis: categoryAxis([...new Set(rows.map(row => row.label))]),
         xaxis: {title: "time on the second machine / on the first", type: "log", tickvals: [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]}},
       note: both.map(each => `First ${each.first}, second ${each.second}: their rankings by CUES correlate with ${fixed(each.spearman, 3)} (Spearman).`).join(" ")
-        + known.map(each => ` Rank correlation of the times: ${each.times.map(time => `${time.stage} ${fixed(time.rank_correlation, 2)}`).join(", ")}.`).join(""),
+        + known.map(each => ` Rank correlation of the times of ${each.second}: ${each.times.map(time => `${time.stage} ${fixed(time.rank_correlation, 2)}`).join(", ")}.`).join(""),
     };
   },
 };
