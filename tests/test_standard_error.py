@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from aerocues.standard_error import STANDARD_ERROR, standard_error_in
+from aerocues.standard_error import STANDARD_ERROR, standard_error_in, tell
 
 
 def where() -> tuple[int, int]:
@@ -44,6 +44,26 @@ def test_an_interruption_comes_afterwards() -> None:
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     finally:
         signal.signal(signal.SIGINT, handler)
+
+
+def test_what_is_told_meanwhile_comes_afterwards(capfd: pytest.CaptureFixture[str]) -> None:
+    """Not into the file of another thread, where nobody would read it."""
+    led, over = threading.Event(), threading.Event()
+
+    def lead() -> None:
+        with tempfile.TemporaryFile() as file, standard_error_in(file):
+            led.set()
+            over.wait()
+
+    other = threading.Thread(target=lead)
+    other.start()
+    led.wait()
+    teller = threading.Thread(target=tell, args=["interrupted\n"])
+    teller.start()
+    over.set()
+    other.join()
+    teller.join()
+    assert capfd.readouterr().err == "interrupted\n"
 
 
 def test_threads_wait_for_each_other() -> None:

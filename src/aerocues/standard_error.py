@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
@@ -13,7 +14,14 @@ from typing import IO
 STANDARD_ERROR = 2
 INTERRUPTING = ("SIGINT", "SIGTERM", "SIGHUP")
 # The descriptor belongs to the whole process: two threads at once would each keep the other's.
-_lock = threading.Lock()
+_lock = threading.RLock()
+
+
+def tell(text: str) -> None:
+    """Write to standard error; wait while another thread leads it elsewhere."""
+    with _lock:
+        sys.stderr.write(text)
+        sys.stderr.flush()
 
 
 @contextlib.contextmanager

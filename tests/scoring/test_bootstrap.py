@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tracemalloc
 from dataclasses import replace
 
@@ -171,13 +172,26 @@ def test_what_has_no_score_takes_no_part() -> None:
 
 def test_an_alternative_seldom_valid_is_judged_by_the_resamples_that_hold_it() -> None:
     values = random_table(0).values.copy()
-    values[2, 1:] = NAN
+    values[2, 2:] = NAN
     resampled = bootstrap(score(table_of(values), ScoreSettings(failures="omit")), 300)
     missing = np.isnan(resampled.scores[:, 2])
-    # None of 6 repeats drawn is the first: (5 / 6) ** 6 = 0.33.
-    assert missing.mean() == pytest.approx(0.33, abs=0.08)
+    # None of 6 repeats drawn is one of the first two: (4 / 6) ** 6 = 0.09.
+    assert missing.mean() == pytest.approx(0.09, abs=0.05)
+    # Student's t of two repeats has one degree of freedom.
+    assert resampled.units_of.tolist() == [6, 6, 2, *[6] * (len(values) - 3)]
+    reach = 12.706 * math.sqrt(2) * np.nanstd(resampled.scores[:, 2])
     low, high = resampled.score_interval()
-    assert low[2] <= high[2]
+    assert low[2] == pytest.approx(max(resampled.centre[2] - reach, 0), abs=1e-3)
+    assert high[2] == pytest.approx(min(resampled.centre[2] + reach, 1), abs=1e-3)
+
+
+def test_an_alternative_valid_once_has_no_interval() -> None:
+    values = random_table(0).values.copy()
+    values[2, 1:] = NAN
+    resampled = bootstrap(score(table_of(values), ScoreSettings(failures="omit")), 300)
+    for low, high in (resampled.score_interval(), resampled.rank_interval()):
+        assert np.isnan([low[2], high[2]]).all()
+        assert not np.isnan(np.delete(low, 2)).any()
 
 
 @pytest.mark.parametrize(("resamples", "seed"), [(1, 0), (0, 0), (10, -1)])

@@ -13,6 +13,7 @@ from aerocues.cli.progress import Tally, waiting
 from aerocues.cli.wording import in_options
 from aerocues.phrases import spoken_seconds
 from aerocues.progress import Event
+from aerocues.standard_error import tell
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -114,7 +115,7 @@ def display() -> Iterator[Tally]:
             yield tally
     except Interrupted as interruption:
         kept = f"; {tally.kept()}" if tally and tally.kept() else ""
-        sys.stderr.write(f"interrupted{kept}; run the same command again to continue\n")
+        tell(f"interrupted{kept}; run the same command again to continue\n")
         raise typer.Exit(interruption.exit_code) from None
 
 

@@ -33,6 +33,7 @@ from aerocues.cli import (
 from aerocues.cli.wording import in_options
 from aerocues.errors import AerocuesError, DamageWarning
 from aerocues.phrases import printable
+from aerocues.standard_error import tell
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -118,7 +119,7 @@ def exit_code(arguments: Sequence[str]) -> int:
             "a smaller --max-width"
         )
     except (KeyboardInterrupt, typer.Abort) as interruption:
-        sys.stderr.write("interrupted\n")
+        tell("interrupted\n")
         return getattr(interruption, "exit_code", INTERRUPTED)
 
 
@@ -147,7 +148,7 @@ def _warnings_in_lines(arguments: Sequence[str]) -> Iterator[None]:
             elif str(message) not in said:
                 said.add(str(message))
                 told = in_options(str(message), _parameters(arguments))
-                sys.stderr.write(f"warning: {' '.join(told.split())}\n")
+                tell(f"warning: {' '.join(told.split())}\n")
 
         warnings.showwarning = show
         warnings.simplefilter("always", DamageWarning)
@@ -175,5 +176,5 @@ def _told(error: Any) -> str:
 
 
 def _complain(message: str) -> int:
-    sys.stderr.write(f"error: {printable(' '.join(message.split()))}\n")
+    tell(f"error: {printable(' '.join(message.split()))}\n")
     return BAD_INPUT

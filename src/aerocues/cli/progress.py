@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from collections import Counter
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 from aerocues.cli.wording import in_options
 from aerocues.phrases import spoken_seconds
 from aerocues.progress import Activity, Event
+from aerocues.standard_error import tell
 
 SECONDS_BETWEEN_LINES = 10.0
 SHARE_BETWEEN_LINES = 0.1
@@ -195,5 +195,4 @@ class PlainLines(Tally):
 
     def _say(self, line: str) -> None:
         self._remember()
-        sys.stderr.write(f"{in_options(line)}\n")
-        sys.stderr.flush()
+        tell(f"{in_options(line)}\n")

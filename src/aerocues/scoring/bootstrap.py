@@ -37,6 +37,8 @@ class Bootstrap:
         What is resampled.
     units : int
         Number of units. With a single unit, intervals and probabilities are NaN.
+    units_of : (alternatives,) int64
+        Units in which each alternative was measured: a race leaves most of them out early.
     """
 
     centre: Array
@@ -46,6 +48,7 @@ class Bootstrap:
     weights: Array
     unit: Unit
     units: int
+    units_of: NDArray[np.int64]
 
     def score_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
         """Lower and upper bound, (alternatives,) each: Student's t interval of the score.
@@ -56,8 +59,7 @@ class Bootstrap:
             warnings.simplefilter("ignore", RuntimeWarning)  # alternatives without a score
             error = np.nanstd(self.scores, axis=0)
         reach = self._quantile(confidence) * error
-        low, high = np.maximum(self.centre - reach, 0.0), np.minimum(self.centre + reach, 1.0)
-        return self._where_known(low), self._where_known(high)
+        return np.maximum(self.centre - reach, 0.0), np.minimum(self.centre + reach, 1.0)
 
     def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
         """Best and worst rank, (alternatives,) each: expanded percentile interval of the rank.
@@ -67,19 +69,20 @@ class Bootstrap:
         """
         from scipy.special import ndtr
 
-        low, high = _interval(self.ranks, float(ndtr(-self._quantile(confidence))))
-        return self._where_known(np.floor(low)), self._where_known(np.ceil(high))
+        low, high = _interval(self.ranks, ndtr(-self._quantile(confidence)))
+        return np.floor(low), np.ceil(high)
 
-    def _quantile(self, confidence: float) -> float:
-        """Of Student's t, for the standard deviation of resamples.
+    def _quantile(self, confidence: float) -> Array:
+        """(alternatives,) quantiles of Student's t, for the standard deviation of resamples.
 
-        Their variance is that of a mean of `units`, times (units - 1) / units.
+        Their variance is that of a mean of the units n, times (n - 1) / n. NaN for a single unit.
         """
         # scipy.stats.t has the same values, but takes most of a second to load.
         from scipy.special import stdtrit
 
-        free = max(self.units - 1, 1)
-        return float(stdtrit(free, (1 + confidence) / 2) * np.sqrt((free + 1) / free))
+        free = np.maximum(self.units_of - 1, 1)
+        quantiles = stdtrit(free, (1 + confidence) / 2) * np.sqrt((free + 1) / free)
+        return np.where(self.units_of > 1, quantiles, np.nan)
 
     def probability_best(self) -> Array:
         """(alternatives,) share of the resamples in which each is the best; ties share it."""
@@ -138,15 +141,24 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
         weights=np.concatenate([batch.weights for batch in found]),
         unit=unit_of_resampling(table),
         units=len(np.unique(independent_units(table))),
+        units_of=_units_of(scores),
     )
 
 
-def _interval(values: Array, tail: float) -> tuple[Array, Array]:
-    ends = np.array([tail, 1 - tail])
-    whole = ~np.isnan(values).any(axis=0)
-    some = ~np.isnan(values).all(axis=0) & ~whole
+def _units_of(scores: Scores) -> NDArray[np.int64]:
+    """(alternatives,) number of units whose repeats count for each."""
+    table = scores.table
+    known = (~np.isnan(table.values)).any(axis=2)
+    counts = table.tried_on if scores.settings.failures == "worst" else table.tried_on & known
+    units = independent_units(table)
+    return np.array([len(np.unique(units[of_one])) for of_one in counts], np.int64)
+
+
+def _interval(values: Array, tails: Array) -> tuple[Array, Array]:
+    """Lower and upper quantiles of columns, each with its own tail; NaN where that is NaN."""
     result = np.full((2, values.shape[1]), np.nan)
-    result[:, whole] = np.quantile(values[:, whole], ends, axis=0)
-    if some.any():
-        result[:, some] = np.nanquantile(values[:, some], ends, axis=0)
+    never = np.isnan(values).all(axis=0)
+    for tail in np.unique(tails[~np.isnan(tails)]):
+        here = (tails == tail) & ~never
+        result[:, here] = np.nanquantile(values[:, here], [tail, 1 - tail], axis=0)
     return result[0], result[1]

@@ -108,8 +108,7 @@ class JointScores:
         import polars as pl
 
         table, number = self.scores.table, len(self.combinations)
-        tried = (table.failed | ~np.isnan(table.values)).any(axis=2)
-        succeeded = np.where(tried, ~table.failed.any(axis=2), np.nan)
+        succeeded = np.where(table.tried_on, table.succeeded_on, np.nan)
         rows = [("success_rate", "higher", succeeded)]
         rows += [
             (criterion.name, criterion.better, table.values[:, :, column])

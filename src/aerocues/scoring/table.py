@@ -112,24 +112,30 @@ class DecisionTable:
         return np.array([not criterion.reconstruction for criterion in self.criteria])
 
     @property
+    def tried_on(self) -> Mask:
+        """(alternatives, repeats) bool: whether it was measured, including failures."""
+        chosen = self._of_repeats
+        there = self.failed[:, :, chosen] | ~np.isnan(self.values[:, :, chosen])
+        return np.asarray(there.any(axis=2))
+
+    @property
+    def succeeded_on(self) -> Mask:
+        """(alternatives, repeats) bool: whether it was measured, and no criterion failed."""
+        return np.asarray(self.tried_on & ~self.failed[:, :, self._of_repeats].any(axis=2))
+
+    @property
     def tried(self) -> NDArray[np.int64]:
         """(alternatives,) number of measured repeats, including failed ones."""
-        return np.asarray(self._tried.any(axis=2).sum(axis=1))
+        return np.asarray(self.tried_on.sum(axis=1))
 
     @property
     def success_rate(self) -> Array:
         """(alternatives,) share of the measured repeats in which no criterion failed."""
-        succeeded = self._tried.any(axis=2) & ~self.failed[:, :, self._of_repeats].any(axis=2)
-        return np.asarray(succeeded.sum(axis=1) / np.maximum(self.tried, 1))
+        return np.asarray(self.succeeded_on.sum(axis=1) / np.maximum(self.tried, 1))
 
     @property
     def _of_repeats(self) -> Mask:
         return self.by_repeat if self.by_repeat.any() else ~self.by_repeat
-
-    @property
-    def _tried(self) -> Mask:
-        chosen = self._of_repeats
-        return np.asarray(self.failed[:, :, chosen] | ~np.isnan(self.values[:, :, chosen]))
 
     def without_criterion(self, name: str) -> DecisionTable:
         """The table without one criterion."""
