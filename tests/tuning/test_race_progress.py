@@ -39,6 +39,13 @@ def test_a_stage_that_cannot_end_in_time_is_refused_after_a_few_steps() -> None:
     assert steps_until_refused(step, 1, 100) == 4
 
 
+def test_slow_steps_at_first_do_not_tell_the_pace_of_steps_that_differ() -> None:
+    told = RaceProgress(None, 60.0, BEGAN, Slow(0.9))
+    step = told.preparing("setting thresholds", "detectors", alike=False)
+    # Two looks at the clock a step: refused when half is done, not after four.
+    assert steps_until_refused(step, 1, 60) == 30
+
+
 def test_steps_of_another_kind_have_a_pace_of_their_own() -> None:
     clock = Slow(0.1)
     step = RaceProgress(None, 60.0, BEGAN, clock).preparing("surveying the flight", "images")

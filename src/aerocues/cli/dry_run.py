@@ -19,6 +19,7 @@ LONGEST_LIST = 10
 
 def print_plan(arguments: dict[str, Any]) -> None:
     """Print what `aerocues.run` would do with `arguments`."""
+    from aerocues.cli.live import display
     from aerocues.evaluation.run import plan_run
     from aerocues.methods.counting import count_left_out, named
     from aerocues.methods.plugins import installed_methods
@@ -29,7 +30,8 @@ def print_plan(arguments: dict[str, Any]) -> None:
     patterns, detectors, descriptors, everything = (arguments[name] for name in SELECTION)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(methods, patterns, **kept, everything=everything)
-    turns = plan_run(**arguments)
+    with display() as tally:
+        turns = plan_run(**arguments, progress=tally)
     plan = turns[0][1]
     asked = named(methods, patterns, **kept)
     left_out = count_left_out(asked, frozenset(chosen), methods)

@@ -293,16 +293,20 @@ def plan_run(
     timing: Timing = "exclusive",
     timing_pairs: int | None = None,
     retry_failed: bool = False,
+    progress: Progress | None = None,
 ) -> list[tuple[Timing, Plan]]:
-    """What `run` would do with the same arguments, pass by pass; nothing is measured or written."""
+    """What `run` would do with the same arguments, pass by pass; nothing is measured or written.
+
+    A flight whose pairs nobody chose is surveyed for it, about a second an image.
+    """
     asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
-    context, silent = asked.context(dataset), RunProgress(None)
+    context, told = asked.context(dataset), RunProgress(progress)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(context.methods, combinations, **kept, everything=everything)
     store = Store.open(Path(output)) if (Path(output) / RUN).is_file() else None
-    context = replace(context, dataset=asked.measured(dataset, silent, store, keep=False))
+    context = replace(context, dataset=asked.measured(dataset, told, store, keep=False))
     return [
-        (turn.timing, _plan(context, chosen, turn, store, silent.read, retry_failed=retry_failed))
+        (turn.timing, _plan(context, chosen, turn, store, told.read, retry_failed=retry_failed))
         for turn in asked.passes(context.dataset)
     ]
 

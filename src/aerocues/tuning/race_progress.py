@@ -82,8 +82,15 @@ class RaceProgress:
         what = f"looking which of {count(pairs, 'pair')} show the same things"
         self._stage.tell(message=what, standing=what)
 
-    def preparing(self, stage: str, unit: str) -> Callable[[int, int], None]:
+    def preparing(self, stage: str, unit: str, *, alike: bool = True) -> Callable[[int, int], None]:
         """Tells of a stage before the race how many are done.
+
+        Parameters
+        ----------
+        stage, unit : str
+        alike : bool
+            Whether steps take about as long as each other; else their pace is believed only when
+            half of them are done.
 
         Raises
         ------
@@ -96,7 +103,8 @@ class RaceProgress:
 
         def step(done: int, total: int) -> None:
             told.tell(done=done, total=total, standing="")
-            self._refuse_late(stage, pace.to_go(done, total))
+            to_go = pace.to_go(done, total)
+            self._refuse_late(stage, to_go if alike or 2 * done >= total else 0.0)
 
         return step
 

@@ -111,7 +111,7 @@ def recommend_by_race(
     pairs = part.pairs
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
     chosen = _chosen(context, combinations)
-    reached = tell.preparing("setting thresholds", "detectors")
+    reached = tell.preparing("setting thresholds", "detectors", alike=False)
     parts, footings = at_equal_footing(
         context.methods, parts, part.images, chosen, limit, seed=seed, progress=reached
     )
