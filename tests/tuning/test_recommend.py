@@ -225,7 +225,7 @@ def test_sequences_that_stand_for_others_are_spread() -> None:
 def steps_of(journal: Path) -> list[dict[str, object]]:
     if not journal.exists():
         return []
-    [race] = json.loads(journal.read_text()).values()
+    [race] = [race for race in json.loads(journal.read_text()).values() if "steps" in race]
     steps: list[dict[str, object]] = race["steps"]
     return steps
 
