@@ -4,39 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tests.report.conftest import Opened, written
-from tests.report.small_payload import entry_of, frame_of
+from tests.report.small_payload import RACE, entry_of, frame_of
 
 Open = Callable[..., Opened]
-RACE: dict[str, Any] = {
-    "dataset": "images",
-    "objective": "balanced",
-    "title": "good 3D models, in reasonable time",
-    "best": "KAZE-KAZE-L2-BF",
-    "leader": "ORB-ORB-HAM-BF",
-    "probability": 0.4,
-    "ended": "budget",
-    "seconds": 90.0,
-    "combinations": 466,
-    "measured": 12,
-    "measurements": 30,
-    "pairs": 8,
-    "candidates": 153,
-    "ranked": [
-        {
-            "combination": "ORB-ORB-HAM-BF",
-            "score": 0.8,
-            "probability": 0.4,
-            "pairs": 2,
-            "succeeded": 2,
-        }
-    ],
-    "final": None,
-}
 
 
 def _taken(opened: Opened) -> str:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import RACE
@@ -15,6 +15,20 @@ from aerocues.results.whole_files import json_content, write_whole
 
 ANSWER = "answer"
 """Beside the journals, whose keys are hashes."""
+NUMBER = int | float
+FIGURES = ("probability", "seconds", "combinations", "measured", "measurements", "pairs")
+# What reports read of an answer, of one of its rows and of its final.
+ANSWER_SHAPE: Mapping[str, Any] = {
+    **dict.fromkeys(("dataset", "title", "best", "leader", "ended"), str),
+    **dict.fromkeys((*FIGURES, "candidates"), NUMBER),
+    "ranked": list,
+    "final": dict | None,
+}
+RANKED_SHAPE: Mapping[str, Any] = {
+    "combination": str,
+    **dict.fromkeys(("score", "probability"), NUMBER | None),
+}
+FINAL_SHAPE: Mapping[str, Any] = {"images": int, "of": int, "models": list, "unfinished": list}
 
 
 @dataclass(frozen=True)
@@ -145,9 +159,29 @@ def record_answer(folder: Path, answer: Mapping[str, Any]) -> None:
 
 
 def recorded_answer(folder: Path) -> dict[str, Any] | None:
-    """What the latest finished race in a results folder found; None if there is none."""
+    """What the latest finished race in a results folder found; None if none, or a damaged one."""
     answer = _races(folder / RACE).get(ANSWER)
-    return answer if isinstance(answer, dict) else None
+    return answer if _is_answer(answer) else None
+
+
+def _is_answer(answer: Any) -> TypeGuard[dict[str, Any]]:
+    if not _has_shape(answer, ANSWER_SHAPE):
+        return False
+    ranked, final = answer["ranked"], answer["final"]
+    if not ranked or not all(_has_shape(row, RANKED_SHAPE) for row in ranked):
+        return False
+    if final is None:
+        return True
+    return _has_shape(final, FINAL_SHAPE) and all(
+        isinstance(name, str) for name in (*final["models"], *final["unfinished"])
+    )
+
+
+def _has_shape(content: Any, shape: Mapping[str, Any]) -> bool:
+    """Whether it is a mapping with these fields, each of the type."""
+    return isinstance(content, dict) and all(
+        name in content and isinstance(content[name], kind) for name, kind in shape.items()
+    )
 
 
 def _step(asked: str, spent: float, kept: float, missing: Sequence[str]) -> Step:
