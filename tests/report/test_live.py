@@ -9,7 +9,11 @@ from pathlib import Path
 
 from aerocues.errors import ScoreError
 from aerocues.progress import Event
-from aerocues.report.live import HOST, SECONDS_BETWEEN_PAGES, LivePage, Serving
+from aerocues.report.live import HOST, SECONDS_BETWEEN_PAGES, LivePage, Serving, page_of_folder
+from aerocues.tuning.journal import record_answer
+from tests.report.decoding import payload_in
+from tests.report.made_up import COMBINATIONS, folder_of, measured
+from tests.report.small_payload import RACE
 
 PAGE = """<meta content="default-src 'none'; img-src data:"><body>made</body>"""
 
@@ -99,3 +103,13 @@ def test_a_browser_here_gets_page_and_state_and_others_nothing() -> None:
         assert state == {"made": 0, "told": "racing: ORB leads (61%)"}
         assert asked(serving, "/etc")[0] == 404
         assert asked(serving, "/", Host="elsewhere.example")[0] == 403
+
+
+def test_while_a_race_goes_on_the_page_shows_no_answer_of_another(tmp_path: Path) -> None:
+    results = folder_of(measured(combinations=COMBINATIONS[:2], pairs=2), tmp_path)
+    record_answer(results.folder, {**RACE, "dataset": "flight"})
+    page = tmp_path / "page.html"
+    page.write_text(page_of_folder(results.folder), encoding="utf-8")
+    (entry,) = payload_in(page)["entries"]
+    assert entry["dataset"] == "flight"
+    assert entry["race"] is None

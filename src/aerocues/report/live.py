@@ -126,7 +126,9 @@ class LivePage:
 
 
 def page_of_folder(folder: Path) -> str:
-    """The page of what a folder holds so far, without pictures and clouds.
+    """The page of what a folder holds so far, without pictures, clouds and the answer of a race.
+
+    While a race goes on, the recorded answer is that of another race, or there is none.
 
     Raises
     ------
@@ -138,7 +140,10 @@ def page_of_folder(folder: Path) -> str:
     from aerocues.report.report import default_title, listed, report_entries
 
     entries = report_entries(listed(folder), resamples=RESAMPLES)
-    return page_of(payload_of(entries, f"{default_title(entries)}, so far"))
+    payload = payload_of(entries, f"{default_title(entries)}, so far")
+    for entry in payload["entries"]:
+        entry["race"] = None
+    return page_of(payload)
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -100,7 +100,7 @@ function certaintyOfScore(entry, chosen) {
 function measuredShare(entry) {
   const all = entry.combinations.length * entry.pairs.length;
   const rows = Object.values(entry.counts).reduce((sum, count) => sum + count, 0);
-  const race = entry.race?.unfinished ? " The race recorded no answer: give the same command again." : "";
+  const race = entry.race?.unfinished ? " No answer of a race is recorded." : "";
   return `${rows < all ? ` Only ${percent(rows / all)} of all combinations and pairs were measured.` : ""}${race}`;
 }
 
