@@ -45,14 +45,17 @@ def display_and_page(folder: Path, *, live: bool) -> Iterator[tuple[Tally, Progr
         sys.stderr.flush()
         with display() as tally:
 
-            def told() -> str:
-                event = tally.event
-                stands = tally.stands()
-                return stands if stands.startswith(event.stage) else f"{event.stage}: {stands}"
-
             def both(event: Event) -> None:
                 tally(event)
                 page(event)
 
-            page.tell = told
+            page.tell = lambda: told(tally)
             yield tally, both
+
+
+def told(tally: Tally) -> str:
+    """Stage and how things stand, for the line of the page."""
+    if tally.began is None:
+        return "starting"
+    stage, stands = tally.event.stage, tally.stands()
+    return stands if stands.startswith(stage) else f"{stage}: {stands}"
