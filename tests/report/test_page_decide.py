@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.report.conftest import Opened, written
-from tests.report.small_payload import RACE, entry_of, frame_of
+from tests.report.small_models import small_models
+from tests.report.small_payload import METHODS, RACE, entry_of, frame_of
 
 Open = Callable[..., Opened]
 
@@ -68,12 +69,21 @@ def test_a_pair_on_the_map_opens(open_report: Open) -> None:
 def test_a_race_gives_its_own_answer_and_how_much_it_measured(
     open_report: Open, tmp_path: Path
 ) -> None:
-    entry = {**entry_of("images", seed=0, name="images"), "race": RACE}
+    final = {"images": 12, "of": 120, "models": ["KAZE-KAZE-L2-BF"], "unfinished": []}
+    models = small_models(METHODS, "")
+    models["values"]["pairs"] = [30] * len(METHODS)
+    entry = {
+        **entry_of("images", seed=0, name="images"),
+        "race": {**RACE, "final": final},
+        "models": models,
+    }
     opened = open_report(file=written(frame_of([entry]), tmp_path / "race.html"))
     assert _taken(opened) == "KAZE-KAZE-L2-BF"
     assert "Most accurate: SIFT-SIFT-L2-BF" in opened.page.inner_text("#verdict")
     words = opened.page.locator(".sure").first.inner_text()
     assert "12 of 466 combinations on up to 8 of 153 pairs" in words
     assert "ORB-ORB-HAM-BF led with a probability of 40" in words
+    # The models are of a block of a tenth of the images.
+    assert "Your 120 images, about 300 pairs" in opened.page.inner_text("#verdict")
     opened.page.click('[data-purpose="overall"]')
     assert _taken(opened) == "SIFT-SIFT-L2-BF"

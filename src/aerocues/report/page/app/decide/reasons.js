@@ -50,11 +50,22 @@ function wholeFlight(entry, a) {
   if (a === null) return null;
   const {detect, describe, match, verify} = entry.medians;
   if (![detect, describe, match].every(stage => isKnown(stage[a]))) return null;
-  const {values} = entry.models ?? {values: /** @type {Record<string, Value[]>} */ ({})};
-  const images = values.images?.find(isKnown) ?? new Set(entry.pairs.flatMap(pair => [pair.image_1, pair.image_2])).size;
-  const pairs = values.pairs?.find(isKnown) ?? entry.pairs.length;
+  const {whose, images, pairs, about} = extentOf(entry);
   const seconds = images * (Number(detect[a]) + Number(describe[a])) + pairs * (Number(match[a]) + Number(verify[a] ?? 0));
-  return [`Your ${images} images, ${counted(pairs, "pair")}`, `${duration(seconds)} on one core`];
+  return [`${whose} ${images} images, ${about}${counted(pairs, "pair")}`, `${duration(seconds)} on one core`];
+}
+
+/** Images and pairs of the flight. The models of a race may be of a block of it: the pairs of all grow with the images.
+ * Without models, only those that were measured are known.
+ * @param {Entry} entry */
+function extentOf(entry) {
+  const values = entry.models?.values;
+  const built = Math.max(0, ...(values?.images ?? []).map(Number));
+  const images = built || new Set(entry.pairs.flatMap(pair => [pair.image_1, pair.image_2])).size;
+  const pairs = built ? values?.pairs?.[values.images.indexOf(built)] ?? entry.pairs.length : entry.pairs.length;
+  const whole = built ? raceOf(entry)?.final?.of ?? 0 : 0;
+  if (whole <= images) return {whose: built ? "Your" : "These", images, pairs, about: ""};
+  return {whose: "Your", images: whole, pairs: Math.round(pairs * whole / images), about: "about "};
 }
 
 /** How sure the answer is.
