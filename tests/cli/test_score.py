@@ -209,8 +209,12 @@ def test_files_may_be_standard_output(call: Call, finished: Path, elsewhere: Pat
 
 
 def test_tables_for_papers(call: Call, finished: Path, elsewhere: Path) -> None:
-    printed = call("compare", finished, elsewhere, "--latex", "-").out
+    printed = call("compare", finished, elsewhere, "--latex", "-", "--top", 1).out
     assert printed.count(r"\begin{tabular}") == 5
+    bodies = [table.split(r"\bottomrule")[0] for table in printed.split(r"\midrule")[1:]]
+    spearman, kendall, differences, criteria, times = (body.count(r"\\") for body in bodies)
+    assert (spearman, kendall, differences) == (2, 2, 1)
+    assert min(criteria, times) > 1
     printed = call("validate", finished, "--markdown", "-").out
     assert "**Power alpha: Spearman's correlation**" in printed
     printed = call("validate", finished, "--csv", "-").out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -22,6 +23,8 @@ from aerocues.cli.scoring import (
 )
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from aerocues.scoring.compared import ComparedResults, Runs
 
 
@@ -105,14 +108,21 @@ def compare(
         write_table(found.frame(), csv, "csv", "combination")
     for form, target in (("latex", latex), ("markdown", markdown)):
         if target is not None:
-            tables = {title: table.head(top) for title, table in found.tables().items()}
-            write_tables(tables, target, form)
+            write_tables(_shortened(found.tables(), top), target, form)
     if STANDARD_OUTPUT in (csv, latex, markdown):
         return
     if as_json:
         print_json(_facts(found))
     else:
         print_compared(found, top, reconstruction=reconstruction)
+
+
+def _shortened(tables: Mapping[str, pl.DataFrame], top: int) -> dict[str, pl.DataFrame]:
+    """Lists of combinations have at most `top` rows; matrices and criteria stay whole."""
+    return {
+        title: table.head(top) if table.columns[0] == "combination" else table
+        for title, table in tables.items()
+    }
 
 
 def _write_factors(found: ComparedResults, file: Path) -> None:
