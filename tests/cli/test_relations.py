@@ -8,9 +8,11 @@ from pathlib import Path
 
 import polars as pl
 
+from aerocues.cli.relations_table import relations_table
 from aerocues.results.combination_columns import METHODS
 from aerocues.results.measured_results import Results
 from aerocues.results.store import Store
+from aerocues.scoring.outcomes import relate_outcomes
 from tests.cli.conftest import Call
 from tests.report.made_up import folder_of, measured
 
@@ -37,6 +39,10 @@ def test_relations_to_models_are_told(tmp_path: Path, call: Call) -> None:
     assert "points" in answer.out.split("3D models")[1]
     facts = json.loads(call("validate", folder, "--json").out)["reconstruction"]
     assert {"feature", "outcome", "pearson", "spearman"} <= set(facts[0])
+    table = relations_table(relate_outcomes(results))
+    assert table.columns == ["name", "combinations", "pearson", "spearman"]
+    assert f"{facts[0]['feature']} -> {facts[0]['outcome']}" == table["name"][0]
+    assert table["name"].is_unique().all()
 
 
 def test_few_models_are_too_few_to_tell(finished: Path, tmp_path: Path, call: Call) -> None:

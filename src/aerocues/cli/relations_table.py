@@ -8,6 +8,8 @@ from aerocues.cli.console import plain_table, print_table, standard_output
 from aerocues.cli.validation_tables import print_title
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from aerocues.scoring.measured import Measured
     from aerocues.scoring.outcomes import Relations
 
@@ -60,6 +62,14 @@ def print_relations(found: Relations | str) -> None:
         "Figures of models count for successful reconstructions, images for all. The report also "
         "shows Pearson's correlation."
     )
+
+
+def relations_table(found: Relations) -> pl.DataFrame:
+    """The same for files; the first column names the rows, as ``FEATURE -> OUTCOME``."""
+    import polars as pl
+
+    name = pl.concat_str("feature", "outcome", separator=" -> ").alias("name")
+    return found.frame().select(name, pl.exclude("feature", "outcome"))
 
 
 def relation_facts(found: Relations | str) -> Any:

@@ -102,11 +102,13 @@ def validate(
 def _write(
     found: Validation, relations: Relations | str, targets: dict[str, str | None], top: int
 ) -> None:
+    from aerocues.cli.relations_table import relations_table
+
     if not any(targets.values()):
         return
     tables = found.tables(top)
     if not isinstance(relations, str):
-        tables["Pairs and 3D models"] = relations.frame()
+        tables["Pairs and 3D models"] = relations_table(relations)
     for form, target in targets.items():
         if target is not None:
             write_tables(tables, target, form)
