@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Iterator
 from http.client import HTTPConnection
 from pathlib import Path
@@ -52,6 +53,31 @@ def test_a_page_is_made_where_there_are_new_rows_and_seldom() -> None:
     assert not live.refresh()
     live(finished(3, "timing"))
     assert not live.refresh()
+
+
+def test_calls_are_timed_only_when_a_page_that_is_being_made_is_done() -> None:
+    begun, go_on, order = threading.Event(), threading.Event(), []
+
+    def make(folder: Path) -> str:
+        begun.set()
+        go_on.wait(60)
+        order.append("made")
+        return PAGE
+
+    def measure() -> None:
+        live(finished(2, "timing"))
+        order.append("timing")
+
+    live = LivePage(Path("results"), make, Clock())
+    live(finished(1))
+    threads = [threading.Thread(target=live.refresh), threading.Thread(target=measure)]
+    threads[0].start()
+    assert begun.wait(60)
+    threads[1].start()
+    go_on.set()
+    for thread in threads:
+        thread.join()
+    assert order == ["made", "timing"]
 
 
 def test_the_page_waits_for_rows_that_can_be_ranked_and_keeps_the_last_one() -> None:

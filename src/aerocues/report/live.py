@@ -71,7 +71,7 @@ class LivePage:
     make : callable
         Makes the page of a folder: HTML.
     clock, used : callable
-        Return seconds, and CPU seconds of the thread.
+        Return seconds, and CPU seconds of the process: a page takes more threads than one.
     tell : callable, optional
         How things stand, in a line; the latest event by default.
 
@@ -84,7 +84,7 @@ class LivePage:
     folder: Path
     make: Callable[[Path], str]
     clock: Callable[[], float] = time.monotonic
-    used: Callable[[], float] = time.thread_time
+    used: Callable[[], float] = time.process_time
     tell: Callable[[], str] | None = None
     event: Event = field(default_factory=lambda: Event("starting"))
     made: int = 0
@@ -92,14 +92,23 @@ class LivePage:
     page: str = WAITING % "There are no rows yet that can be ranked."
     _made_of: int = 0
     _next: float = float("-inf")
+    _making: threading.Lock = field(default_factory=threading.Lock)
 
     def __call__(self, event: Event) -> None:
-        """Take in an event."""
+        """Take in an event; before calls are timed alone, wait for a page that is being made."""
+        begins = event.stage != self.event.stage
         self.changes += bool(event.rows) or event.done != self.event.done
         self.event = event
+        if begins and event.stage == TIMED_ALONE:
+            with self._making:
+                pass
 
     def refresh(self) -> bool:
         """Make the page anew where there are new rows and it is time; whether that was done."""
+        with self._making:
+            return self._refresh()
+
+    def _refresh(self) -> bool:
         now, begun = self.clock(), self.used()
         if now < self._next or self.changes == self._made_of or self.event.stage == TIMED_ALONE:
             return False
