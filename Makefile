@@ -22,8 +22,9 @@ DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZ
 PIP := $(BIN)/python -m pip
 INSTALL := install --quiet --no-compile --no-deps
 
-# Neighbours, which share fixtures and compiled code, go to one process; one that is done early helps out.
-TWO_PROCESSES := -n 2 --dist worksteal
+# One process more than cores, as tests often wait for programs that they started. Neighbours, which share fixtures and compiled code, go
+# to one process; one that is done early helps out.
+PROCESSES := -n 3 --dist worksteal
 
 # Extra arguments for pytest, for instance: make test PYTEST_ARGUMENTS="-k synthetic"
 PYTEST_ARGUMENTS :=
@@ -70,13 +71,13 @@ demo: setup ## fly, measure, rank, reconstruct and report: a simulated survey of
 	$(BIN)/aerocues report $(DEMO_RESULTS) -o $(DEMO_REPORT)
 
 test: setup ## the fast tests
-	$(BIN)/pytest $(TWO_PROCESSES) -m "not slow" $(PYTEST_ARGUMENTS)
+	$(BIN)/pytest $(PROCESSES) -m "not slow" $(PYTEST_ARGUMENTS)
 
 test-slow: setup ## the tests that take more than a few seconds each
-	$(BIN)/pytest $(TWO_PROCESSES) -m slow $(PYTEST_ARGUMENTS)
+	$(BIN)/pytest $(PROCESSES) -m slow $(PYTEST_ARGUMENTS)
 
 test-oldest-opencv: $(OLDEST_INSTALLED) ## the tests of the methods with the oldest supported OpenCV
-	$(OLDEST_VENV)/bin/python -m pytest $(TWO_PROCESSES) tests/methods -m "not slow" $(PYTEST_ARGUMENTS)
+	$(OLDEST_VENV)/bin/python -m pytest $(PROCESSES) tests/methods -m "not slow" $(PYTEST_ARGUMENTS)
 
 # What is not installed in it comes from the usual environment.
 $(OLDEST_INSTALLED): $(INSTALLED)
