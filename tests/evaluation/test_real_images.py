@@ -48,16 +48,17 @@ def test_sift_on_graf_is_right_by_the_truth(graf: Dataset, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_exact_search_changes_no_row_of_any_combination(graf: Dataset, tmp_path: Path) -> None:
+def test_exact_search_changes_no_row_of_any_method(graf: Dataset, tmp_path: Path) -> None:
     near = Dataset(graf.name, graf.images, graf.pairs[:1], graf.geometry)
-    # TBMR differs from call to call.
-    words: dict[str, Any] = {"combinations": "*-BF,!TBMR-*", "max_keypoints": 800}
+    # Each detector and each descriptor; TBMR differs from call to call.
+    chosen = "ORB-*-BF,*-SIFT-L2-BF,*-BRIEF-HAM-BF,AKAZE-AKAZE-*-BF,KAZE-KAZE-*-BF,!TBMR-*"
+    words: dict[str, Any] = {"combinations": chosen, "max_keypoints": 800}
     tables = [
         run(near, output=tmp_path / timing, timing=timing, features=tmp_path / "kept", **words)
         for timing in ("shared", "estimated")
     ]
     shared, estimated = (rows_of(results.table()) for results in tables)
-    assert len(shared) > 150
+    assert len(shared) > 30
     assert_same_rows(estimated, shared)
 
 
