@@ -48,6 +48,19 @@ def views(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     return write_dataset(tmp_path_factory.mktemp("views"), strip(4))
 
 
+@pytest.fixture(scope="session")
+def strips(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two strips of three images, the second one flown back."""
+    import cv2
+
+    from tests.pipeline.test_survey import flight
+
+    folder = tmp_path_factory.mktemp("strips")
+    for image in flight():
+        assert cv2.imwrite(str(folder / image.name), image.read().bgr)
+    return folder
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests that use the fixture `shared_data`, so that `-m` can select them.
 

@@ -5,22 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
-import pytest
-
 from aerocues.datasets.catalog import open_dataset
 from aerocues.datasets.dataset import Dataset
 from aerocues.evaluation.run import plan_run
-from tests.pipeline.test_survey import flight
-
-
-@pytest.fixture(scope="module")
-def strips(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two strips of three images, the second one flown back."""
-    folder = tmp_path_factory.mktemp("strips")
-    for image in flight():
-        assert cv2.imwrite(str(folder / image.name), image.read().bgr)
-    return folder
 
 
 def planned(dataset: Dataset, output: Path, preset: str = "default") -> int:

@@ -3,22 +3,11 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
-import pytest
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.pipeline.flight_pairs import SurveyedFlight, leaves_pairs_open, survey_flight
-from tests.pipeline.test_survey import flight, made_up
-
-
-@pytest.fixture(scope="module")
-def strips(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two strips of three images, the second one flown back."""
-    folder = tmp_path_factory.mktemp("strips")
-    for image in flight():
-        assert cv2.imwrite(str(folder / image.name), image.read().bgr)
-    return folder
+from tests.pipeline.test_survey import made_up
 
 
 def test_a_flight_gets_pairs_across_its_strips(strips: Path) -> None:

@@ -13,6 +13,8 @@ from aerocues.cli.options import JsonOption, ResultsArguments, TopOption
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table, write_tables
 from aerocues.cli.scoring import (
     AggregationOption,
+    AllLatexOption,
+    AllMarkdownOption,
     AlphaOption,
     CriteriaOption,
     FailuresOption,
@@ -64,12 +66,8 @@ def compare(
             metavar="FILE", help="Write one row per combination as CSV; - is standard output."
         ),
     ] = None,
-    latex: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all tables as LaTeX.")
-    ] = None,
-    markdown: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all tables as Markdown.")
-    ] = None,
+    latex: AllLatexOption = None,
+    markdown: AllMarkdownOption = None,
     factors: Annotated[
         Path | None,
         typer.Option(

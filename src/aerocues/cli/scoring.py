@@ -26,6 +26,12 @@ class Test(StrEnum):
     WILCOXON = "wilcoxon"
 
 
+AllLatexOption = Annotated[
+    str | None, typer.Option("--latex", metavar="FILE", help="Write all tables as LaTeX.")
+]
+AllMarkdownOption = Annotated[
+    str | None, typer.Option("--markdown", metavar="FILE", help="Write all tables as Markdown.")
+]
 PresetOption = Annotated[
     str | None,
     typer.Option(

@@ -10,6 +10,8 @@ from aerocues.cli.options import JsonOption, ResultsArgument
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_tables
 from aerocues.cli.scoring import (
     AggregationOption,
+    AllLatexOption,
+    AllMarkdownOption,
     AlphaOption,
     CriteriaOption,
     DatasetOption,
@@ -49,12 +51,8 @@ def validate(
         str | None,
         typer.Option(metavar="FILE", help="Write all tables as one CSV, a row for each value."),
     ] = None,
-    latex: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all tables as LaTeX.")
-    ] = None,
-    markdown: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write all tables as Markdown.")
-    ] = None,
+    latex: AllLatexOption = None,
+    markdown: AllMarkdownOption = None,
 ) -> None:
     """Show how robust the ranking is.
 
