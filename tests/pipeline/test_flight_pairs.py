@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from aerocues.datasets.catalog import open_dataset
 from aerocues.pipeline.flight_pairs import SurveyedFlight, leaves_pairs_open, survey_flight
@@ -40,6 +41,7 @@ def test_what_a_survey_warns_of(strips: Path) -> None:
     assert np.array_equal(survey.partners()[:3], [1, 1, 0])
 
 
+@pytest.mark.slow
 def test_a_survey_is_made_once(strips: Path, tmp_path: Path) -> None:
     looks: list[int] = []
 
