@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import cv2
@@ -15,7 +15,7 @@ from aerocues.methods.arrays import Features, Float32Array
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_unavailable
 from aerocues.methods.exact.availability import why_not_exact
-from aerocues.methods.making import make_descriptor, make_detector, make_matcher
+from aerocues.methods.making import MatcherStage, make_descriptor, make_detector, make_matcher
 from aerocues.methods.registry import Methods, opencv_methods
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.features import on_valid_pixels
@@ -112,7 +112,11 @@ class _Kind:
         self._detector = make_detector(methods, combination.detector)
         self._descriptor = make_descriptor(methods, combination.descriptor, combination.detector)
         self._matcher = make_matcher(methods, combination.matcher, combination.norm)
-        self._of_many = partial(make_matcher, methods, "EXACT", combination.norm)
+        self._make_exact = partial(make_matcher, methods, "EXACT", combination.norm)
+
+    @cached_property
+    def _exact(self) -> MatcherStage:
+        return self._make_exact()
 
     def features(self, pixels: Pixels) -> Features:
         cv2.setRNGSeed(SEED)
@@ -128,7 +132,7 @@ class _Kind:
         if not len(first) or not len(second):
             return Seeds(first.keypoints.xy[:0], second.keypoints.xy[:0])
         few = len(first) * len(second) <= FEW_DISTANCES or why_not_exact()
-        matcher = self._matcher if few else self._of_many()
+        matcher = self._matcher if few else self._exact
         matches = matcher.read(matcher.call(first, second))
         rows_1, rows_2 = matches.indices.T
         return Seeds(first.keypoints.xy[rows_1], second.keypoints.xy[rows_2])
