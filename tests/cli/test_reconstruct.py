@@ -46,7 +46,7 @@ def test_models_from_results_and_figures_into_them(
     assert answer.code == 0, answer.err
     assert answer.out.startswith("flight: 6 images, 15 pairs (exhaustive), ")
     assert answer.out.count("6/6") == 2
-    assert answer.err.splitlines()[0].startswith("1 of 2  ")
+    assert any(line.startswith("1 of 2  ") for line in answer.err.splitlines())
     assert f"aerocues score {results} --reconstruction" in answer.out
     best = re.search(r"points   (.*)/points.ply", answer.out)
     assert best is not None
@@ -70,7 +70,7 @@ def test_models_from_results_and_figures_into_them(
     assert written["points_3d"].to_list() == figures["points_3d"].to_list()
 
     again = call(*words)
-    assert again.err == "2 of 2 models are already finished\n"
+    assert again.err.splitlines()[-1] == "2 of 2 models are already finished"
     scored = call("score", results, "--criteria", "precision,points_3d,registered_images")
     assert scored.code == 2  # the share of the images is the criterion
     scored = call("score", results, "--criteria", "precision,points_3d,reprojection_error")
@@ -196,14 +196,14 @@ def test_what_is_finished_is_not_made_again(
     names = ",".join(path.parent.name for path in outcomes)
     answer = call("reconstruct", flight, "-o", output, "--combinations", names, *OPTIONS)
     assert answer.code == 0
-    assert answer.err == f"{len(outcomes)} of {len(outcomes)} models are already finished\n"
+    assert f"{len(outcomes)} of {len(outcomes)} models are already finished\n" in answer.err
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
 
     # The same command: what was being made is made, and the rest after it.
     again = begin(flight, output)
     _, err = again.communicate()
     assert again.returncode == 0, err
-    assert f"{len(outcomes)} of " in err.splitlines()[0]
+    assert any(f"{len(outcomes)} of " in line for line in err.splitlines())
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
     finished = sorted(path.parent.name for path in output.glob("*/outcome.json"))
     written = pl.read_csv(output / "reconstructions.csv")
