@@ -20,7 +20,8 @@ from aerocues import AerocuesError, Combination, Event
 from aerocues.arguments import seconds_of
 from aerocues.cli.program import app
 from aerocues.errors import ArgumentError
-from tests.cli.conftest import write_views
+from tests.cli.conftest import shared_views
+from tests.made_once import made_once
 
 COMBINATIONS = "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-BF,AKAZE-AKAZE-HAM-BF"
 FUNCTIONS = sorted(
@@ -32,16 +33,17 @@ CLASSES = sorted(name for name in aerocues.__all__ if inspect.isclass(getattr(ae
 @pytest.fixture(scope="module")
 def photos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of four overlapping images."""
-    folder = tmp_path_factory.mktemp("images") / "photos"
-    write_views(folder)
-    return folder
+    return shared_views(tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
 def results(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> aerocues.Results:
     """Three combinations on three pairs."""
-    output = tmp_path_factory.mktemp("results") / "results"
-    return aerocues.run(photos, COMBINATIONS, output, timing="shared", workers=1)
+
+    def make(folder: Path) -> None:
+        aerocues.run(photos, COMBINATIONS, folder, timing="shared", workers=1)
+
+    return aerocues.Results(made_once(tmp_path_factory, "results-of-three", make)[0])
 
 
 def test_every_public_name_can_be_had() -> None:

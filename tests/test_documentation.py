@@ -32,8 +32,8 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 SHELLS = ("console", "bash")
 CHOICE = re.compile(r" --(combinations|detectors|descriptors) ")
 TWO_METHODS = " --combinations 'ORB-ORB-HAM-*,AKAZE-AKAZE-HAM-*'"
-MANY = "ORB-*-HAM-BF,SIFT-SIFT-L2-*"
-FEWER = "ORB-BR*-HAM-BF,ORB-ORB-HAM-BF,SIFT-SIFT-L2-*"
+MANY = "ORB-*-HAM-BF"
+FEWER = "ORB-BR*-HAM-BF,ORB-ORB-HAM-BF"
 
 
 @dataclass(frozen=True)
@@ -258,6 +258,8 @@ def smaller(command: str) -> str:
     command = command.replace(MANY, FEWER)
     if command.startswith("aerocues recommend"):
         command += " --no-final"
+    if command.startswith("aerocues reconstruct"):
+        command += " --no-baseline"
     if command.startswith(("aerocues run", "aerocues recommend")) and not CHOICE.search(command):
         command += TWO_METHODS
     return command

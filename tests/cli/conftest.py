@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from aerocues.cli import main
+from tests.made_once import made_once
 
 COMBINATIONS = "ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-BF,GFTT-BRIEF-HAM-FLANN,ORB-FREAK-HAM-BF"
 VIEWS = 4
@@ -65,24 +66,33 @@ def write_views(folder: Path) -> None:
         turned.crop((corner, corner, corner + 240, corner + 180)).save(folder / f"{number}.png")
 
 
+def shared_views(factory: pytest.TempPathFactory) -> Path:
+    """The folder of these views, for all tests that only read it."""
+
+    def make(folder: Path) -> None:
+        write_views(folder / "photos")
+
+    return made_once(factory, "views", make)[0] / "photos"
+
+
 @pytest.fixture(scope="session")
 def photos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of four overlapping images: three pairs."""
-    folder = tmp_path_factory.mktemp("images") / "photos"
-    write_views(folder)
-    return folder
+    return shared_views(tmp_path_factory)
 
 
 @pytest.fixture(scope="session")
 def finished(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The results folder of a finished run of 4 combinations on 3 pairs."""
-    folder = tmp_path_factory.mktemp("finished") / "results"
-    words = ["run", str(photos), "-o", str(folder), "--combinations", COMBINATIONS]
-    done = subprocess.run(
-        [sys.executable, "-m", "aerocues", *words, "--workers", "1"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return folder
+
+    def make(folder: Path) -> None:
+        words = ["run", str(photos), "-o", str(folder / "results"), "--combinations", COMBINATIONS]
+        done = subprocess.run(
+            [sys.executable, "-m", "aerocues", *words, "--workers", "1"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+
+    return made_once(tmp_path_factory, "finished", make)[0] / "results"

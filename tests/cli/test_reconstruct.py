@@ -165,7 +165,7 @@ def test_one_image_and_other_scenes_are_refused(
 
 def begin(flight: Path, output: Path) -> subprocess.Popen[str]:
     words = ["reconstruct", str(flight), "-o", str(output), "--workers", "1", *OPTIONS]
-    words += ["--combinations", f"{NAMES},ORB-BR*-HAM-BF"]
+    words += ["--combinations", f"{NAMES},ORB-ORB-HAM-BF"]
     return subprocess.Popen(
         [sys.executable, "-c", PROGRAM, *words],
         stdout=subprocess.PIPE,

@@ -27,7 +27,8 @@ from aerocues.results.versions import software_versions
 from tests.evaluation.cluster import Cluster
 from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine
-from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
+from tests.evaluation.scenes import Rows, assert_same_rows, rows_of, strip, write_dataset
+from tests.made_once import made_once
 from tests.methods.distribution import write_distribution
 from tests.waiting import wait_until
 
@@ -93,8 +94,22 @@ def test_rows_of_long_units_come_pair_by_pair(
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
 
 
-def test_workers_that_die_and_one_that_comes_late(cluster: Cluster, tmp_path: Path) -> None:
-    dataset = write_dataset(tmp_path / "images", strip(8))
+@pytest.fixture(scope="module")
+def eight(tmp_path_factory: pytest.TempPathFactory) -> tuple[Dataset, Rows]:
+    """Eight views, and the rows of `MANY` as measured without a cluster."""
+
+    def make(folder: Path) -> tuple[Dataset, Rows]:
+        dataset = write_dataset(folder / "images", strip(8))
+        undisturbed = run(dataset, MANY, folder / "r", engine=InlineEngine())
+        return dataset, rows_of(undisturbed.table())
+
+    return made_once(tmp_path_factory, "eight-views", make)[1]
+
+
+def test_workers_that_die_and_one_that_comes_late(
+    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
+) -> None:
+    dataset, undisturbed = eight
     first = [cluster.add_worker() for _ in range(3)]
     with connected(cluster.address) as client:
         client.wait_for_workers(3)
@@ -111,14 +126,13 @@ def test_workers_that_die_and_one_that_comes_late(cluster: Cluster, tmp_path: Pa
         results = run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), progress=observer)
     assert observer.action is None
     assert observer.seen
-    undisturbed = run(dataset, MANY, tmp_path / "u", engine=InlineEngine())
-    assert_same_rows(rows_of(results.table()), rows_of(undisturbed.table()))
+    assert_same_rows(rows_of(results.table()), undisturbed)
 
 
 def test_an_interruption_keeps_what_was_finished_and_ends_processes(
-    cluster: Cluster, tmp_path: Path
+    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
 ) -> None:
-    dataset = write_dataset(tmp_path / "images", strip(8))
+    dataset, undisturbed = eight
     cluster.add_worker()
 
     def interrupt() -> None:
@@ -132,12 +146,13 @@ def test_an_interruption_keeps_what_was_finished_and_ends_processes(
         kept = Results(tmp_path / "r").status()
         assert 0 < kept.planned - kept.left < kept.planned
         results = run(dataset, MANY, tmp_path / "r", engine=engine)
-    undisturbed = run(dataset, MANY, tmp_path / "u", engine=InlineEngine())
-    assert_same_rows(rows_of(results.table()), rows_of(undisturbed.table()))
+    assert_same_rows(rows_of(results.table()), undisturbed)
 
 
-def test_a_lost_scheduler_is_an_error(cluster: Cluster, tmp_path: Path) -> None:
-    dataset = write_dataset(tmp_path / "images", strip(8))
+def test_a_lost_scheduler_is_an_error(
+    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
+) -> None:
+    dataset, _ = eight
     cluster.add_worker()
     observer = During(cluster.kill_scheduler)
     with (

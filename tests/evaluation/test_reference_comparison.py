@@ -32,6 +32,7 @@ from tests.evaluation.scenes import (
     strip,
     write_dataset,
 )
+from tests.made_once import made_once
 from tests.methods.pictures import textured
 from tests.reconstruction.scenes import write_scene
 
@@ -47,8 +48,10 @@ def plane(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 @pytest.fixture(scope="module")
 def rows(plane: Dataset, tmp_path_factory: pytest.TempPathFactory) -> pl.DataFrame:
-    folder = tmp_path_factory.mktemp("results") / "r"
-    return run(plane, FEW, folder, engine=InlineEngine(), timing="shared").table()
+    def make(folder: Path) -> pl.DataFrame:
+        return run(plane, FEW, folder, engine=InlineEngine(), timing="shared").table()
+
+    return made_once(tmp_path_factory, "compared-with-reference", make)[1]
 
 
 def test_a_reference_says_of_matches_what_the_truth_says(rows: pl.DataFrame) -> None:

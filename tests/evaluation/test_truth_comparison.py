@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ImageError
+from tests.made_once import made_once
 from tests.reconstruction.scenes import write_scene
 
 pytestmark = pytest.mark.slow
@@ -33,14 +35,18 @@ class Gone:
 @pytest.fixture(scope="module")
 def views(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     places = [(-3.0, 0.0), (3.0, 0.0)]
-    return write_scene(tmp_path_factory.mktemp("views"), places, pairs=PAIRS)
+    make = partial(write_scene, places=places, pairs=PAIRS)
+    return made_once(tmp_path_factory, "two-views", make)[1]
 
 
 @pytest.fixture(scope="module")
 def rows(views: Dataset, tmp_path_factory: pytest.TempPathFactory) -> pl.DataFrame:
-    folder = tmp_path_factory.mktemp("results") / "results"
     combinations = "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF,STAR-LATCH-HAM-BF"
-    return aerocues.run(views, combinations, folder).table().sort("detector")
+
+    def make(folder: Path) -> pl.DataFrame:
+        return aerocues.run(views, combinations, folder).table().sort("detector")
+
+    return made_once(tmp_path_factory, "compared-with-truth", make)[1]
 
 
 def test_matches_keypoints_and_pose_are_compared_with_the_truth(rows: pl.DataFrame) -> None:

@@ -14,6 +14,7 @@ import pickle
 import pickletools
 import shutil
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,7 @@ from aerocues.exports.match_lists import match_list
 from aerocues.exports.targets import target_named
 from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.protocol import ReconstructionProtocol
+from tests.made_once import made_once
 from tests.reconstruction.scenes import CAMERA, write_scene
 
 pytestmark = pytest.mark.slow
@@ -38,7 +40,7 @@ KEYPOINTS = 400
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     """Four photographs, each paired with each."""
-    whole = write_scene(tmp_path_factory.mktemp("landscape") / "images")
+    whole = made_once(tmp_path_factory, "landscape", write_scene)[1]
     kept = whole.images[:4]
     names = {image.name for image in kept}
     pairs = [pair for pair in whole.pairs if {pair.image_1, pair.image_2} <= names]
@@ -53,7 +55,9 @@ def flight(
     options = ReconstructionOptions(
         protocol=ReconstructionProtocol(0, KEYPOINTS, "refine"), refine_keypoints=False, workers=1
     )
-    return linked_flight(scene, request.param, tmp_path_factory.mktemp("flight"), options)
+    name = f"flight-{request.param}"
+    make = partial(linked_flight, scene, request.param, options=options)
+    return made_once(tmp_path_factory, name, make)[1]
 
 
 def written(flight: Flight, target: str, folder: Path) -> list[str]:

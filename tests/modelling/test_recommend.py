@@ -13,6 +13,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.reconstruction.models import Models
 from aerocues.results.combination_columns import name_in_row
 from aerocues.results.reconstruction_schema import BASELINE
+from tests.made_once import made_once
 from tests.reconstruction.scenes import write_scene
 
 FEW = "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-FLANN"
@@ -21,7 +22,7 @@ OPTIONS: dict[str, Any] = {"budget": "1h", "max_keypoints": 1000, "max_pairs": 4
 
 @pytest.fixture(scope="module")
 def landscape(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
-    return write_scene(tmp_path_factory.mktemp("landscape") / "images")
+    return made_once(tmp_path_factory, "landscape", write_scene)[1]
 
 
 @pytest.mark.slow
@@ -74,6 +75,8 @@ def test_images_without_a_focal_length_have_a_final(landscape: Dataset, tmp_path
     photos.mkdir()
     for image in landscape.images[:4]:
         cv2.imwrite(str(photos / image.name), image.read().bgr)
-    found = aerocues.recommend(photos, FEW, tmp_path / "race", **OPTIONS)
+    found = aerocues.recommend(
+        photos, "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF", tmp_path / "race", **OPTIONS
+    )
     assert found.final is not None
     assert "ORB" in {row["detector"] for row in found.final.rows}

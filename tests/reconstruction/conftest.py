@@ -9,6 +9,7 @@ import pytest
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.reconstruction.models import Models
+from tests.made_once import made_once
 from tests.reconstruction.scenes import Options, write_scene
 
 OPTIONS: Options = {"max_keypoints": 1000, "baseline": False}
@@ -18,14 +19,17 @@ COMBINATIONS = "SIFT-SIFT-L2-FLANN,ORB-ORB-HAM-BF"
 @pytest.fixture(scope="session")
 def landscape(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     """Nine photographs with known poses and depth."""
-    return write_scene(tmp_path_factory.mktemp("landscape") / "images")
+    return made_once(tmp_path_factory, "landscape", write_scene)[1]
 
 
 @pytest.fixture(scope="session")
 def models(landscape: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Models:
     """Models of the landscape; tests change nothing in them."""
-    output = tmp_path_factory.mktemp("models") / "models"
-    return aerocues.reconstruct(landscape, COMBINATIONS, output, workers=1, **OPTIONS)
+
+    def make(folder: Path) -> None:
+        aerocues.reconstruct(landscape, COMBINATIONS, folder, workers=1, **OPTIONS)
+
+    return Models(made_once(tmp_path_factory, "models", make)[0])
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from aerocues.reconstruction import baseline
 from aerocues.reconstruction.models import Models
 from aerocues.results.metrics import Row
 from aerocues.results.reconstruction_schema import BASELINE
+from tests.made_once import made_once
 from tests.reconstruction.scenes import Options, scene_of
 
 SIFT = "SIFT-SIFT-L2-FLANN"
@@ -27,21 +28,27 @@ OPTIONS: Options = {"max_keypoints": 1500, "seed": 3}
 @pytest.fixture(scope="module")
 def photographs(landscape: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     """The same images, nothing else known; one of them has a space in its name."""
-    folder = tmp_path_factory.mktemp("photographs")
-    images = []
-    for image in landscape.images:
-        assert isinstance(image.source, FileSource)
-        name = image.name.replace("view_0", "view 0")
-        shutil.copyfile(image.source.path, folder / name)
-        images.append(Image(name, FileSource(folder / name)))
-    return scene_of(images)
+
+    def make(folder: Path) -> Dataset:
+        images = []
+        for image in landscape.images:
+            assert isinstance(image.source, FileSource)
+            name = image.name.replace("view_0", "view 0")
+            shutil.copyfile(image.source.path, folder / name)
+            images.append(Image(name, FileSource(folder / name)))
+        return scene_of(images)
+
+    return made_once(tmp_path_factory, "photographs", make)[1]
 
 
 @pytest.fixture(scope="module")
 def compared(photographs: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Models:
     """COLMAP's default and one combination, of images whose focal length is not known."""
-    folder = tmp_path_factory.mktemp("compared") / "models"
-    return aerocues.reconstruct(photographs, SIFT, folder, workers=1, **OPTIONS)
+
+    def make(folder: Path) -> None:
+        aerocues.reconstruct(photographs, SIFT, folder, workers=1, **OPTIONS)
+
+    return Models(made_once(tmp_path_factory, "compared", make)[0])
 
 
 def rows_of(models: Models) -> dict[str, Row]:

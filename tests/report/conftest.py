@@ -15,7 +15,8 @@ import pytest
 import aerocues
 from aerocues import Results
 from aerocues.report.page import page_of
-from tests.cli.conftest import write_views
+from tests.cli.conftest import shared_views
+from tests.made_once import made_once
 from tests.report.made_up import failed, folder_of, measured
 from tests.report.small_payload import small_payload
 
@@ -130,13 +131,14 @@ def two_machines(tmp_path_factory: pytest.TempPathFactory) -> list[Results]:
 @pytest.fixture(scope="session")
 def photos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of four overlapping images: three pairs."""
-    folder = tmp_path_factory.mktemp("images") / "photos"
-    write_views(folder)
-    return folder
+    return shared_views(tmp_path_factory)
 
 
 @pytest.fixture(scope="session")
 def finished(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> Results:
     """A finished run of 4 combinations on the 3 pairs of `photos`."""
-    output = tmp_path_factory.mktemp("run") / "results"
-    return aerocues.run(str(photos), RUN_COMBINATIONS, output, workers=1)
+
+    def make(folder: Path) -> None:
+        aerocues.run(str(photos), RUN_COMBINATIONS, folder, workers=1)
+
+    return Results(made_once(tmp_path_factory, "results-of-reports", make)[0])
