@@ -39,7 +39,7 @@ AUDIT_TOOLS := pip-audit==2.10.1 pip-licenses==5.5.5 cyclonedx-bom==7.5.0
 
 DOCS_VENV := .venv-docs
 DOCS_INSTALLED := $(DOCS_VENV)/.installed
-DOCS_TOOLS := mkdocs-material==9.8.2 mkdocs==1.6.1 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11 pymdown-extensions==13.1.2
+DOCS_TOOLS := mkdocs-material==9.8.2 mkdocs==1.6.1 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11 pymdown-extensions==13.1.2 plotly==7.1.0
 
 LIGHT_VENV := .venv-light
 LIGHT_INSTALLED := $(LIGHT_VENV)/.installed

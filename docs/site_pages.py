@@ -1,7 +1,7 @@
 """A hook of the site: pages as Markdown of the site needs them.
 
 Links to files outside of the guide become their paths: in the repository they lead somewhere; the
-site holds the guide alone. Marks of generated tables go, for a table that follows a comment without
+site holds the guide and the notebooks alone. Marks of generated tables go, for a table that follows a comment without
 a blank line would stay text; so does what only the tests read: that the output of a block is exact.
 """
 
@@ -11,6 +11,7 @@ import re
 from typing import Any
 
 OUTSIDE = re.compile(r"\[([^\]]+)\]\(\.\./([^)]+)\)")
+NOTEBOOK = re.compile(r"\(\.\./examples/(\w+)\.ipynb\)")
 EXACT = re.compile(r"^```console exact$", re.MULTILINE)
 MARK = re.compile(r"^<!-- .* -->$", re.MULTILINE)
 
@@ -20,6 +21,8 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
     >>> on_page_markdown("see [examples](../examples)")
     'see examples (`examples` in the repository)'
+    >>> on_page_markdown("see [my photos](../examples/my_photos.ipynb)")
+    'see [my photos](my_photos.md)'
     """
-    markdown = EXACT.sub("```console", markdown)
+    markdown = NOTEBOOK.sub(r"(\1.md)", EXACT.sub("```console", markdown))
     return MARK.sub("", OUTSIDE.sub(r"\1 (`\2` in the repository)", markdown))

@@ -19,6 +19,7 @@ import pytest
 from numpy.typing import NDArray
 
 import aerocues
+from docs.notebook_pages import EXAMPLES, page_of
 from docs.tables import TABLES, rendered
 from tests.evaluation.cluster import Cluster
 
@@ -103,12 +104,24 @@ def test_links_between_pages_lead_somewhere(page: Path) -> None:
 
 def test_the_site_has_every_page_and_every_public_name() -> None:
     navigation = (REPOSITORY / "mkdocs.yml").read_text(encoding="utf-8")
-    listed = re.findall(r"(\w+\.md)$", navigation, re.MULTILINE)
-    assert sorted(listed) == [page.name for page in PAGES[1:]]
+    listed = set(re.findall(r"(\w+\.md)$", navigation, re.MULTILINE))
+    notebooks = {f"{notebook.stem}.md" for notebook in EXAMPLES.glob("*.ipynb")}
+    assert listed == {page.name for page in PAGES[1:]} | notebooks
     reference = (REPOSITORY / "docs" / "api.md").read_text(encoding="utf-8")
     names = re.findall(r"^::: (aerocues\.[\w.]+)\.(\w+)$", reference, re.MULTILINE)
     assert {name for _, name in names} == set(aerocues.__all__) - {"__version__"}
     assert all(getattr(aerocues, name).__module__ == module for module, name in names)
+
+
+@pytest.mark.parametrize("notebook", ["my_photos", "my_descriptor"])
+def test_a_notebook_is_a_page_with_its_outputs(notebook: str) -> None:
+    page = page_of(EXAMPLES / f"{notebook}.ipynb")
+    assert page.count("```python\n") > 6
+    assert "data:image/jpeg;base64," in page
+    assert "Plotly.newPlot" in page
+    assert "<table" in page
+    for target in LINK.findall(page):
+        assert (REPOSITORY / "docs" / target.partition("#")[0]).exists(), target
 
 
 @pytest.mark.parametrize("command", [one for one in ALL_COMMANDS if one.startswith("make")])

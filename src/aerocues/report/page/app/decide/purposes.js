@@ -88,7 +88,7 @@ function modelsThatWorked(entry) {
 function modelText({models}, name) {
   const m = models?.combinations.indexOf(name) ?? -1;
   if (!models || m < 0) return "model";
-  const points = models.values.points_in_3_images?.[m] ?? models.values.points_3d?.[m] ?? null;
+  const points = models.values.points_3d?.[m] ?? null;
   return `${shown(models.values.registered_images?.[m] ?? null)} images, ${isKnown(points) ? counted(points, "point") : "no points"}`;
 }
 
