@@ -130,6 +130,7 @@ def frame_of(entries: list[dict[str, Any]]) -> dict[str, Any]:
             ],
             "criteria": [],
             "statuses": [{"name": "ok", "meaning": "a model was found"}],
+            "words": [{"word": "inlier", "meaning": f"a meaning {HARMFUL}"}],
             "citation": f"Someone, {HARMFUL}",
             "notes": [f"a note {HARMFUL}"],
         },

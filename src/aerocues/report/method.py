@@ -11,6 +11,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_meaningless
 from aerocues.methods.plugins import installed_methods
 from aerocues.report.columns import criterion_facts
+from aerocues.report.words import WORDS
 from aerocues.results.metrics import METRICS
 from aerocues.results.schema import COLUMNS
 from aerocues.results.statuses import STATUSES
@@ -23,7 +24,7 @@ CITATION = (
 
 
 def method_facts(version: str, notes: Sequence[str]) -> dict[str, Any]:
-    """Definitions of columns, criteria and statuses, citation, and notes."""
+    """Definitions of columns, criteria, statuses and words, citation, and notes."""
     better = {metric.name: metric.better for metric in METRICS}
     return {
         "columns": [
@@ -37,6 +38,7 @@ def method_facts(version: str, notes: Sequence[str]) -> dict[str, Any]:
         ],
         "criteria": criterion_facts(),
         "statuses": [{"name": each.name, "meaning": each.meaning} for each in STATUSES],
+        "words": [{"word": word, "meaning": meaning} for word, meaning in WORDS.items()],
         "citation": CITATION.format(version=version),
         "notes": list(notes),
     }

@@ -367,6 +367,7 @@ interface MethodFacts {
   columns: {name: string; unit: string; definition: string; better: Better}[];
   criteria: Criterion[];
   statuses: {name: string; meaning: string}[];
+  words: {word: string; meaning: string}[];
   citation: string;
   notes: string[];
 }

@@ -3,6 +3,7 @@
 import {disclosure, figuresList, make} from "../basis/elements.js";
 import {fixed, percent} from "../basis/numbers.js";
 import {currentEntry, state} from "../basis/state.js";
+import {explained} from "../basis/words.js";
 import {codeOf, commandOf, copyButton} from "./copies.js";
 import {openCombination} from "../drawer/combination.js";
 import {refreshSliders, weightSliders} from "./own-weights.js";
@@ -43,9 +44,9 @@ function answer(entry, purpose) {
   const weak = weakness(entry, first);
   return [
     make("p", {class: "lead"}, make("span", {class: "take"}, "Take "), make("strong", {}, nameOf(entry, first.name))),
-    make("p", {class: "meaning"}, [filterWords(entry), `Best for: ${purpose.meaning(entry)}.`].filter(Boolean).join(" ")),
+    make("p", {class: "meaning"}, explained([filterWords(entry), `Best for: ${purpose.meaning(entry)}.`].filter(Boolean).join(" "))),
     figuresList(reasons(entry, first, purpose)),
-    make("p", {class: "sure"}, certainty(entry, purpose, ranked)),
+    make("p", {class: "sure"}, explained(certainty(entry, purpose, ranked))),
     ...(purpose.key === "overall" ? equals(entry) : []),
     ...(isGeneral(purpose) ? remarks(entry, first) : []),
     ...(weak ? [make("p", {class: "weak"}, weak)] : []),

@@ -93,12 +93,14 @@ function excluded(entry) {
 }
 
 function methodWords() {
-  const {columns, notes, citation} = payload.method;
+  const {columns, notes, citation, words} = payload.method;
   return [
     notes.length ? make("div", {class: "block"}, make("h3", {}, "Notes"), make("ul", {}, notes.map(note => make("li", {}, note)))) : null,
     columns.length ? disclosure(`Every column (${columns.length})`, plainTable("Definitions of the columns", [
       {label: "Column", text: row => row.name}, {label: "Unit", text: row => row.unit || NONE},
       {label: "Better", text: row => row.better ?? NONE}, {label: "Definition", text: row => row.definition}], columns)) : null,
+    words.length ? disclosure(`Words (${words.length})`, plainTable("Words and their meaning", [
+      {label: "Word", text: row => row.word}, {label: "Meaning", text: row => row.meaning}], words)) : null,
     citation ? make("div", {class: "block"}, make("h3", {}, "Citation"), make("pre", {class: "citation", tabindex: "0"}, citation)) : null,
   ].filter(Boolean);
 }

@@ -9,6 +9,7 @@ import {LIMITS} from "../basis/limits.js";
 import {isKnown} from "../basis/numbers.js";
 import {bytesOf} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
+import {explained} from "../basis/words.js";
 import {selectControl} from "./controls.js";
 
 /** @type {Figure[]} */
@@ -33,7 +34,7 @@ export function addFigure(parent, spec) {
   const element = make("figure", {class: `figure ${spec.wide ? "wide" : ""} ${spec.tall ? "tall" : ""}`, id: `figure-${spec.id}`},
     make("figcaption", {},
       make("h3", {}, spec.title),
-      make("p", {class: "read"}, spec.read)),
+      make("p", {class: "read"}, explained(spec.read))),
     make("div", {class: "controls"}, controls.map(control => control.element),
       make("span", {class: "save"}, ["SVG", "PNG", "CSV"].map(save))),
     plot, note);

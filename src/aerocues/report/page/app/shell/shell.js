@@ -8,6 +8,7 @@ import {LIMITS} from "../basis/limits.js";
 import {listed} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
+import {explained} from "../basis/words.js";
 import {buildLimits, updateLimits} from "./limits-panel.js";
 
 /** @type {Section[]} */
@@ -18,7 +19,7 @@ export function addSection(spec) {
   const body = make("div", {class: "body"});
   const element = make("section", {id: spec.id, "aria-labelledby": `title-${spec.id}`},
     make("h2", {id: `title-${spec.id}`, tabindex: "-1"}, spec.title),
-    make("p", {class: "read"}, spec.read), body);
+    make("p", {class: "read"}, explained(spec.read)), body);
   sections.push({...spec, body, element});
 }
 
