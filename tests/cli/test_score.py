@@ -191,6 +191,25 @@ def test_machines_are_compared_by_their_times(call: Call, finished: Path, elsewh
     assert by_stage["match"]["ratio"] == pytest.approx(3)
     assert facts["shared"] == [[4, 4], [4, 4]]
     assert len(facts["versatility"]) == 4
+    assert facts["overview"] is None
+    assert len(runs["machines"]["combinations"]) == runs["machines"]["kept_in_top"] == 4
+
+
+def test_datasets_are_put_together(call: Call, finished: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    shutil.copytree(finished, other)
+    for file in (other / "plan.parquet", *sorted((other / "parts").glob("*.parquet"))):
+        renamed = pl.read_parquet(file).with_columns(pl.lit("other").alias("dataset"))
+        renamed.write_parquet(file)
+    answer = call("compare", finished, other)
+    assert answer.code == 0
+    assert max(map(len, answer.out.splitlines())) <= 100
+    facts = json.loads(call("compare", finished, other, "--json").out)["overview"]
+    assert facts["datasets"] == ["photos", "other"]
+    assert facts["evaluations"] == 8
+    assert facts["kept_in_top"] == [[4, 4], [4, 4]]
+    assert facts["range_of_bests"] == pytest.approx(0)
+    assert sum(row["evaluations"] for row in facts["hierarchies"]["detectors"]) == 8
 
 
 def test_scores_of_all_results_go_to_a_file(
@@ -210,9 +229,10 @@ def test_files_may_be_standard_output(call: Call, finished: Path, elsewhere: Pat
 
 def test_tables_for_papers(call: Call, finished: Path, elsewhere: Path) -> None:
     printed = call("compare", finished, elsewhere, "--latex", "-", "--top", 1).out
-    assert printed.count(r"\begin{tabular}") == 5
+    # The last six are of the machines: combinations, and each kind of method.
+    assert printed.count(r"\begin{tabular}") == 11
     bodies = [table.split(r"\bottomrule")[0] for table in printed.split(r"\midrule")[1:]]
-    spearman, kendall, differences, criteria, times = (body.count(r"\\") for body in bodies)
+    spearman, kendall, differences, criteria, times = (body.count(r"\\") for body in bodies[:5])
     assert (spearman, kendall, differences) == (2, 2, 1)
     assert min(criteria, times) > 1
     printed = call("validate", finished, "--markdown", "-").out

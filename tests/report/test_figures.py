@@ -13,6 +13,7 @@ from aerocues import Results
 from aerocues.errors import MethodUnavailableError, StoreError
 from aerocues.report import figures
 from aerocues.report.figures import FIGURES, write_figures
+from aerocues.report.matrix_figures import draw_platforms, draw_stability
 from aerocues.report.report import report_entries
 from tests.report.made_up import COMBINATIONS, folder_of, measured
 from tests.report.made_up_models import with_models
@@ -24,6 +25,7 @@ pytest.importorskip("matplotlib")
 def scores_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """One figure of all; the others take long."""
     monkeypatch.setattr(figures, "FIGURES", {"cues": FIGURES["cues"]})
+    monkeypatch.setattr(figures, "ACROSS", {})
 
 
 @pytest.mark.slow
@@ -57,6 +59,16 @@ def test_several_entries_do_not_overwrite_each_other(
     files = write_figures(report_entries(two_machines, resamples=50), tmp_path)
     assert len(set(files)) == 4
     assert (tmp_path / "flight-board-cues.svg").is_file()
+
+
+def test_entries_are_drawn_together(two_machines: list[Results]) -> None:
+    both = report_entries(two_machines, resamples=2)
+    stability, platforms = draw_stability(both), draw_platforms(both)
+    assert stability is not None
+    assert stability.axes[0].get_title() == "Spearman's correlation of the rankings"
+    assert platforms is not None
+    assert "of the first 10 stay" in platforms.axes[0].get_title()
+    assert (draw_stability(both[:1]), draw_platforms(both[:1])) == (None, None)
 
 
 @pytest.mark.usefixtures("scores_only")

@@ -15,7 +15,7 @@ from aerocues.scoring.across import compare_datasets, entries_of, machines_of
 from aerocues.scoring.compared import compare_entries
 from aerocues.scoring.comparison import compare
 from aerocues.scoring.cues import Scores
-from tests.scoring.measurements import Stored, row, rows
+from tests.scoring.measurements import Stored, models, row, rows
 from tests.scoring.tables import table_of
 
 NAMES = ("a", "b", "c", "d", "e")
@@ -173,3 +173,16 @@ def test_the_same_data_set_on_two_machines_is_compared_by_times() -> None:
     assert by_stage["detect"]["ratio"] == pytest.approx(1)
     assert not compared.of_one_dataset
     assert "mean_rank" in compared.frame().columns
+
+
+def test_models_count_where_a_data_set_has_them() -> None:
+    flown, other = InFolder("r"), InFolder("s", dataset="other")
+    flown._reconstructions = models(
+        {"ORB-ORB-HAM-BF": (0.5, 1000, 9), "SIFT-SIFT-L2-BF": (0.6, 2000, 12)}
+    )
+    entries = entries_of([flown, other], reconstruction=True)
+    assert [entry.criteria_of_models for entry in entries] == [3, 0]
+    # The third has no model, and therefore no score by models.
+    assert compare_datasets(entries).shared()[0].tolist() == [2, 2]
+    with pytest.raises(ScoreError, match="reconstruct"):
+        entries_of([InFolder("r"), other], reconstruction=True)

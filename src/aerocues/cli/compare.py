@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.scoring.compared import ComparedResults, Runs
+    from aerocues.scoring.overview import Overview
+    from aerocues.scoring.platform_scores import PlatformScores
 
 
 class Over(StrEnum):
@@ -46,7 +48,10 @@ def compare(
     weights: WeightsOption = None,
     aggregation: AggregationOption = None,
     reconstruction: Annotated[
-        bool, typer.Option("--reconstruction", help="Also score the 3D models, in all results.")
+        bool,
+        typer.Option(
+            "--reconstruction", help="Also score the 3D models of datasets that have some."
+        ),
     ] = False,
     over: Annotated[
         Over,
@@ -140,6 +145,7 @@ def _facts(found: ComparedResults) -> dict[str, Any]:
                 "name": each.name,
                 "dataset": each.dataset,
                 "machine": each.machine,
+                "criteria": list(each.scores.table.criterion_names),
                 "conditions": dict(each.conditions),
             }
             for each in entries
@@ -150,7 +156,28 @@ def _facts(found: ComparedResults) -> dict[str, Any]:
         "kendall": matrix_facts(comparison.names, comparison.kendall()),
         "shared": comparison.shared().tolist(),
         "versatility": comparison.versatility().rename({"alternative": "combination"}).to_dicts(),
+        "overview": _overview_facts(found.overview),
         "runs": [_run_facts(each) for each in found.runs],
+    }
+
+
+def _overview_facts(found: Overview | None) -> dict[str, Any] | None:
+    from aerocues.cli.validate import matrix_facts
+
+    if found is None:
+        return None
+    return {
+        "datasets": list(found.datasets),
+        "evaluations": found.evaluations,
+        "mean_correlation": found.mean_correlation,
+        "mean_of_bests": found.mean_of_bests,
+        "range_of_bests": found.range_of_bests,
+        "best": found.best.to_dicts(),
+        "kept_in_top": found.kept.tolist(),
+        "consistent": found.consistent.rename({"alternative": "combination"}).to_dicts(),
+        "hierarchies": {name: frame.to_dicts() for name, frame in found.hierarchies.items()},
+        "alpha": matrix_facts(found.alpha.names, found.alpha.correlation),
+        "aggregation": matrix_facts(found.aggregation.names, found.aggregation.correlation),
     }
 
 
@@ -171,4 +198,17 @@ def _run_facts(runs: Runs) -> dict[str, Any]:
         "second": runs.second.name,
         **told,
         "times": times if isinstance(times, str) else times.to_dicts(),
+        "machines": _machine_facts(runs.machines),
+    }
+
+
+def _machine_facts(found: PlatformScores | str | None) -> dict[str, Any] | str | None:
+    if found is None or isinstance(found, str):
+        return found
+    return {
+        "spearman": found.spearman,
+        "kept_in_top": found.kept,
+        "largest_difference": found.largest,
+        "combinations": found.combinations.to_dicts(),
+        "components": {name: frame.to_dicts() for name, frame in found.components.items()},
     }

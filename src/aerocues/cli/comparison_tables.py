@@ -8,6 +8,7 @@ import numpy as np
 from rich.text import Text
 
 from aerocues.cli.console import plain_table, print_table, standard_output
+from aerocues.cli.overview_tables import print_machines, print_overview
 from aerocues.cli.validation_tables import numbered_matrix, print_title
 from aerocues.phrases import count
 
@@ -37,7 +38,9 @@ def print_compared(found: ComparedResults, top: int, *, reconstruction: bool) ->
     for entry, told in zip(
         entries, told_conditions([each.conditions for each in entries]), strict=True
     ):
-        conditions = ", ".join(filter(None, (told, entry.machine)))
+        number = entry.criteria_of_models
+        models = f"with {number} criteria of its models" if number else ""
+        conditions = ", ".join(filter(None, (told, entry.machine, models)))
         console.print(Text(f"{entry.name}: {conditions}"))
     if not reconstruction and any(each.reconstructed for each in entries):
         console.print("without the criteria of the reconstruction; --reconstruction adds them")
@@ -46,9 +49,10 @@ def print_compared(found: ComparedResults, top: int, *, reconstruction: bool) ->
     told = f"over the {_shared(comparison)} combinations scored in {OVER[comparison.over]}"
     for name, values in (("Spearman", comparison.spearman()), ("Kendall", comparison.kendall())):
         print_title(console, f"\n{name}'s rank correlation, {told}")
-        print_table(console, numbered_matrix(comparison.names, values))
-    if not found.of_one_dataset:
+        print_table(console, numbered_matrix(comparison.names, values, digits=3))
+    if found.overview:
         _print_versatility(console, comparison, top)
+        print_overview(console, found.overview, top)
 
 
 def _shared(comparison: Comparison) -> str:
@@ -60,7 +64,7 @@ def _shared(comparison: Comparison) -> str:
 def _print_versatility(console: Console, comparison: Comparison, top: int) -> None:
     frame = comparison.versatility()
     shown = frame.head(top)
-    over = count(len(set(comparison.datasets)), "data set")
+    over = count(len(comparison.dataset_names), "dataset")
     best = f"best {len(shown)} of {len(frame)} by mean CUES"
     print_title(console, f"\nversatility on {over}: {best}")
     # More do not fit; --csv and --json have them.
@@ -85,8 +89,7 @@ def _number(value: float | None, form: str = ".3f") -> str:
 
 
 def _print_runs(console: Console, runs: Runs, top: int) -> None:
-    title = f"\n{runs.second.name} (second) against {runs.first.name} (first)"
-    print_title(console, title)
+    print_title(console, f"\n{runs.title}")
     if isinstance(runs.joint, str):
         console.print(Text(runs.joint))
     else:
@@ -96,6 +99,10 @@ def _print_runs(console: Console, runs: Runs, top: int) -> None:
     else:
         print_title(console, "\ntimes of the same rows: ratio of the second to the first")
         print_table(console, _times(runs.times))
+    if isinstance(runs.machines, str):
+        console.print(Text(runs.machines))
+    elif runs.machines:
+        print_machines(console, runs, runs.machines, top)
 
 
 def _print_joint(console: Console, joint: JointScores, top: int) -> None:

@@ -128,6 +128,7 @@ def _facts(scores: Scores, found: Validation) -> dict[str, Any]:
             scores.table.criterion_names, found.criteria_correlation
         ),
         "hierarchies": {name: frame.to_dicts() for name, frame in found.hierarchies.items()},
+        "matcher_times": {name: frame.to_dicts() for name, frame in found.matcher_times.items()},
         "pareto": {
             "criteria": found.pareto_criteria,
             "front": [names[position] for position in found.pareto_front],

@@ -53,6 +53,7 @@ def print_validation(scores: Scores, found: Validation, measured: MeasuredTable,
     )
     print_table(console, numbered_matrix(scores.table.criterion_names, found.criteria_correlation))
     _print_hierarchies(console, found, top)
+    _print_matcher_times(console, found)
     _print_pareto(console, scores, found)
     _print_rank_reversal(console, found)
     unit = "sequence" if unit_of_resampling(scores.table) == "block" else "pair"
@@ -88,13 +89,13 @@ def matrix_table(
     return output
 
 
-def numbered_matrix(names: Sequence[str], values: NDArray[Any]) -> Table:
+def numbered_matrix(names: Sequence[str], values: NDArray[Any], digits: int = 2) -> Table:
     """A matrix with numbered columns, for names too long for headings."""
     numbers = [str(number + 1) for number in range(len(names))]
     output = plain_table("", "", *numbers, numbers=len(numbers), gap=1)
     output.columns[1].no_wrap = True
     for position, name in enumerate(names):
-        cells = [f"{value:.2f}" if value == value else "-" for value in values[position]]
+        cells = [f"{value:.{digits}f}" if value == value else "-" for value in values[position]]
         output.add_row(numbers[position], name, *cells)
     return output
 
@@ -128,6 +129,23 @@ def _print_hierarchies(console: Console, found: Validation, top: int) -> None:
                 f"{row['standard_deviation']:.3f}",
                 f"{row['evaluations']:,}",
                 row["best"],
+            )
+        print_table(console, output)
+
+
+def _print_matcher_times(console: Console, found: Validation) -> None:
+    for component, frame in found.matcher_times.items():
+        cost = found.pareto_criteria[0]
+        print_title(console, f"\n{component}: {cost} with other matchers than brute force")
+        output = plain_table("", "matcher", "combinations", "BF", "other", "ratio", numbers=5)
+        output.columns[0].no_wrap, output.columns[1].justify = True, "left"
+        for row in frame.iter_rows(named=True):
+            output.add_row(
+                row["name"],
+                row["matcher"],
+                f"{row['combinations']:,}",
+                *(f"{row[name]:.3g}" for name in ("brute_force", "other")),
+                f"{row['ratio']:.2f}",
             )
         print_table(console, output)
 

@@ -10,6 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from aerocues.errors import MethodUnavailableError, StoreError
 from aerocues.report.entry import ReportEntry
+from aerocues.report.matrix_figures import (
+    draw_criteria,
+    draw_platforms,
+    draw_sensitivity,
+    draw_stability,
+)
 from aerocues.report.model_figures import draw_models, draw_relation
 from aerocues.report.relation_figures import draw_critical_difference, draw_pareto, draw_times
 from aerocues.report.score_figures import draw_heat_maps, draw_scores, draw_weights
@@ -26,8 +32,15 @@ FIGURES: Mapping[str, Callable[[ReportEntry], Figure | None]] = {
     "pareto": draw_pareto,
     "times": draw_times,
     "critical-difference": draw_critical_difference,
+    "criteria": draw_criteria,
+    "sensitivity": draw_sensitivity,
     "models": draw_models,
     "models-relation": draw_relation,
+}
+# Of all entries together.
+ACROSS: Mapping[str, Callable[[Sequence[ReportEntry]], Figure | None]] = {
+    "stability": draw_stability,
+    "platforms": draw_platforms,
 }
 FORMS: Mapping[str, Mapping[str, Any]] = {
     # Without the date the same data always give the same file.
@@ -56,7 +69,7 @@ ODD = re.compile(r"[^\w.]+")
 
 
 def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Path]:
-    """Draw the key figures of each entry, as SVG and PDF.
+    """Draw the key figures of each entry and of all together, as SVG and PDF.
 
     Parameters
     ----------
@@ -68,7 +81,7 @@ def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Pa
     -------
     list of Path
         The files ``FIGURE.svg`` and ``FIGURE.pdf``; with several entries the name of the entry is
-        prefixed.
+        prefixed to its own.
 
     Raises
     ------
@@ -97,6 +110,10 @@ def write_figures(entries: Sequence[ReportEntry], folder: str | Path) -> list[Pa
                 figure = draw(found)
                 if figure is not None:
                     written += _write(figure, target / f"{prefix}{name}")
+        for name, draw_all in ACROSS.items():
+            figure = draw_all(entries)
+            if figure is not None:
+                written += _write(figure, target / name)
     return written
 
 

@@ -81,7 +81,7 @@ def draw_heat_maps(found: ReportEntry) -> Figure:
         for part, score in zip(parts, scores, strict=True):
             if (part[2], part[3]) == panel:
                 matrix[detectors.index(part[0]), descriptors.index(part[1])] = score
-        image = _heat_map(axes, matrix, limits)
+        image = heat_map(axes, matrix, limits)
         axes.set_xticks(range(len(descriptors)), descriptors, rotation=90)
         axes.set_yticks(range(len(detectors)), detectors)
         axes.set_title(" ".join(panel))
@@ -91,7 +91,8 @@ def draw_heat_maps(found: ReportEntry) -> Figure:
     return figure
 
 
-def _heat_map(axes: Any, matrix: Any, limits: tuple[float, float]) -> Any:
+def heat_map(axes: Any, matrix: Any, limits: tuple[float, float], digits: int = 2) -> Any:
+    """Draw a matrix with its values in the cells; what is NaN stays hatched."""
     rows, columns = matrix.shape
     axes.patch.set(hatch="////", edgecolor="#bbbbbb", facecolor="white")
     image = axes.imshow(matrix, cmap="cividis", vmin=limits[0], vmax=limits[1], aspect="auto")
@@ -99,7 +100,7 @@ def _heat_map(axes: Any, matrix: Any, limits: tuple[float, float]) -> Any:
     for row, column in zip(*np.nonzero(~np.isnan(matrix)), strict=True):
         value = matrix[row, column]
         ink = "white" if value < middle else "black"
-        text = f"{value:.2f}".removeprefix("0")
+        text = f"{value:.{digits}f}".removeprefix("0")
         axes.text(column, row, text, ha="center", va="center", fontsize=5.5, color=ink)
     axes.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(rows + 1) - 0.5, minor=True)

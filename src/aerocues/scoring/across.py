@@ -68,6 +68,11 @@ class Entry:
     source: int = 0
     conditions: Mapping[str, str] = field(default_factory=dict)
 
+    @property
+    def criteria_of_models(self) -> int:
+        """How many criteria of its 3D models it is scored by."""
+        return sum(criterion.reconstruction for criterion in self.scores.table.criteria)
+
 
 def entries_of(
     results: Sequence[Stored],
@@ -85,8 +90,9 @@ def entries_of(
     preset, criteria
         See `measured.table_of`.
     reconstruction : bool or None
-        Whether to add the criteria of reconstruction, which all results must then have. None adds
-        them if there is one dataset on one machine and most combinations were reconstructed.
+        Whether to add the criteria of reconstruction where a dataset was reconstructed; at least
+        one must be. None adds them if there is one dataset on one machine and most combinations
+        were reconstructed.
     **changes
         Settings in place of the preset's; None keeps the preset's.
 
@@ -108,16 +114,16 @@ def entries_of(
         reconstruction = False
     preset = preset or _in_common([rows for _, _, rows in groups])
     models = [each.reconstructions() for each in results]
+    modelled = [dataset in models[source]["dataset"] for source, (dataset, _), _ in groups]
     found: list[tuple[Path, Entry]] = []
-    for source, (dataset, machine), rows in groups:
+    for known, (source, (dataset, machine), rows) in zip(modelled, groups, strict=True):
         measured = table_of(
             MeasuredRows(rows, models[source]),
             preset,
             criteria=criteria,
-            reconstruction=reconstruction,
+            reconstruction=known if reconstruction and any(modelled) else reconstruction,
         )
         scores = score(measured.table, settings_from(measured.preset, **changes))
-        known = dataset in models[source]["dataset"]
         name = measured.preset.name
         conditions = conditions_of(rows, results[source].settings)
         entry = Entry(dataset, dataset, machine, rows, scores, name, known, source, conditions)

@@ -176,7 +176,7 @@ def compare(
     preset, criteria, failures, alpha, weights, aggregation
         How they are scored; see `score`.
     reconstruction : bool
-        Whether to add the criteria of reconstruction, which all of the results then need.
+        Whether to add the criteria of reconstruction to the datasets that have models.
     over : {"pairwise", "all"}
         Compare two rankings over the combinations scored in both, or in all.
     test : {"bootstrap", "wilcoxon"}

@@ -11,9 +11,11 @@ from aerocues.notebooks import as_html
 from aerocues.phrases import count
 from aerocues.scoring.across import Entry, compare_datasets, times_between
 from aerocues.scoring.comparison import Comparison, Over
+from aerocues.scoring.correlation import correlation_frame
 from aerocues.scoring.joint import JointScores, score_jointly
+from aerocues.scoring.overview import Overview, overview_of
+from aerocues.scoring.platform_scores import PlatformScores, platform_scores
 from aerocues.scoring.platforms import device_factors
-from aerocues.scoring.validation import correlation_frame
 
 if TYPE_CHECKING:
     import polars as pl
@@ -30,12 +32,21 @@ class Runs:
         Both scored together; a text says why they cannot be.
     times : pl.DataFrame or str
         See `platforms.compare_times`; a text says why times cannot be compared.
+    machines : PlatformScores, str or None
+        Scores of two machines, each normalised by itself; None if the machine is the same, and a
+        text says why they cannot be compared.
     """
 
     first: Entry
     second: Entry
     joint: JointScores | str
     times: pl.DataFrame | str
+    machines: PlatformScores | str | None = None
+
+    @property
+    def title(self) -> str:
+        """Which two runs these are."""
+        return f"{self.second.name} (second) against {self.first.name} (first)"
 
 
 @dataclass(frozen=True)
@@ -50,11 +61,14 @@ class ComparedResults:
         Of all entries, each normalised by itself.
     runs : sequence of Runs
         The first entry of each dataset with each other one of it.
+    overview : Overview or None
+        What the datasets say together; None for a single one.
     """
 
     entries: Sequence[Entry]
     rankings: Comparison
     runs: Sequence[Runs]
+    overview: Overview | None = None
 
     def __repr__(self) -> str:
         names = ", ".join(entry.name for entry in self.entries)
@@ -97,13 +111,16 @@ class ComparedResults:
             found["Versatility"] = frame.drop(
                 name for name in frame.columns if name.startswith(("rank_", "standard_"))
             )
+        found |= self.overview.tables() if self.overview else {}
         for each in self.runs:
-            between = f"{each.second.name} (second) against {each.first.name} (first)"
+            between = each.title
             if not isinstance(each.joint, str):
                 found[f"CUES of {between}"] = each.joint.differences()
                 found[f"Criteria of {between}"] = each.joint.criteria()
             if not isinstance(each.times, str):
                 found[f"Times of {between}"] = each.times
+            if isinstance(each.machines, PlatformScores):
+                found |= each.machines.tables(between)
         return found
 
     def factors(self) -> dict[str, object]:
@@ -134,9 +151,23 @@ def compare_entries(
     for entry in entries:
         first = first_of.setdefault(entry.dataset, entry)
         if first is not entry:
-            joint = _joint(first, entry, test, seed)
-            runs.append(Runs(first, entry, joint, times_between(first, entry)))
-    return ComparedResults(entries, compare_datasets(entries, over), runs)
+            runs.append(_runs(first, entry, test, seed))
+    rankings = compare_datasets(entries, over)
+    scores = [first.scores for first in first_of.values()]
+    overview = overview_of(scores, rankings) if len(scores) > 1 else None
+    return ComparedResults(entries, rankings, runs, overview)
+
+
+def _runs(first: Entry, second: Entry, test: str, seed: int) -> Runs:
+    return Runs(
+        first=first,
+        second=second,
+        joint=_joint(first, second, test, seed),
+        times=times_between(first, second),
+        machines=platform_scores(first.scores, second.scores)
+        if first.machine != second.machine
+        else None,
+    )
 
 
 def _joint(first: Entry, second: Entry, test: str, seed: int) -> JointScores | str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -38,6 +38,8 @@ class Comparison:
     datasets : tuple of str
         Dataset of each ranking. For versatility, several rankings of one dataset (by several
         machines) count once, with their mean.
+    components : mapping of str to tuple of str
+        Labels of each alternative, by component; see `DecisionTable`.
     """
 
     names: tuple[str, ...]
@@ -45,6 +47,7 @@ class Comparison:
     scores: Array
     over: Over
     datasets: tuple[str, ...]
+    components: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def _compared(self) -> Array:
         in_all = ~np.isnan(self.scores).any(axis=0)
@@ -80,7 +83,7 @@ class Comparison:
         """
         import polars as pl
 
-        scores, ranks = self._by_dataset(self.scores), self._by_dataset(self.ranks())
+        scores, ranks = self.by_dataset(self.scores), self.by_dataset(self.ranks())
         named = {f"score_{name}": row for name, row in zip(self.names, self.scores, strict=True)}
         named |= {f"rank_{name}": row for name, row in zip(self.names, self.ranks(), strict=True)}
         frame = pl.DataFrame(
@@ -99,10 +102,15 @@ class Comparison:
         )
         return frame.sort("datasets", "mean", "alternative", descending=[True, True, False])
 
-    def _by_dataset(self, values: Array) -> Array:
+    @property
+    def dataset_names(self) -> tuple[str, ...]:
+        """Each dataset once, in the order of `by_dataset`."""
+        return tuple(dict.fromkeys(self.datasets))
+
+    def by_dataset(self, values: Array) -> Array:
         """(datasets, alternatives) mean over the rankings of each dataset, or NaN."""
         rows = []
-        for dataset in dict.fromkeys(self.datasets):
+        for dataset in self.dataset_names:
             chosen = values[[each == dataset for each in self.datasets]]
             known = ~np.isnan(chosen)
             total, number = np.where(known, chosen, 0).sum(axis=0), known.sum(axis=0)
@@ -151,9 +159,25 @@ def compare(
         scores=np.array(table),
         over=over,
         datasets=tuple(datasets or scored),
+        components=_components(rankings.values(), alternatives),
     )
     shared = comparison.shared()
     np.fill_diagonal(shared, 0)
     if not shared.any():
         raise ScoreError("no two results share an alternative, so there is nothing to compare")
     return comparison
+
+
+def _components(
+    rankings: Iterable[Scores], alternatives: Sequence[str]
+) -> dict[str, tuple[str, ...]]:
+    """Labels of the alternatives, by the components that all rankings have."""
+    tables = [scores.table for scores in rankings]
+    found = {}
+    for component in tables[0].components:
+        if all(component in table.components for table in tables):
+            labels: dict[str, str] = {}
+            for table in tables:
+                labels |= zip(table.alternatives, table.components[component], strict=True)
+            found[component] = tuple(labels[name] for name in alternatives)
+    return found

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Literal
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.scoring.cues import Scores
+
+if TYPE_CHECKING:
+    import polars as pl
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array, Array], float]
@@ -101,3 +104,11 @@ def _correlation(a: Array, b: Array, measure: Measure) -> float:
     if both.sum() < FEWEST or np.ptp(a[both]) == 0 or np.ptp(b[both]) == 0:
         return float("nan")
     return measure(a[both], b[both])
+
+
+def correlation_frame(names: Sequence[str], values: NDArray[np.float64]) -> pl.DataFrame:
+    """A matrix with the names of its rows in the first column; undefined values are null."""
+    import polars as pl
+
+    columns = dict(zip(names, np.asarray(values).T, strict=True))
+    return pl.DataFrame({"name": list(names), **columns}, nan_to_null=True)

@@ -1,4 +1,4 @@
-"""Mean scores of each detector, descriptor, norm and matcher."""
+"""Mean scores of each detector, descriptor, norm and matcher, on one dataset and across several."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from aerocues.scoring.comparison import Comparison
 from aerocues.scoring.cues import Scores
 
 if TYPE_CHECKING:
@@ -48,4 +49,44 @@ def hierarchy(scores: Scores) -> dict[str, pl.DataFrame]:
         )
         .sort("mean", "name", descending=[True, False])
         for component, labels in table.components.items()
+    }
+
+
+def hierarchy_across(comparison: Comparison) -> dict[str, pl.DataFrame]:
+    """Scores of all datasets together, grouped by every set of labels.
+
+    Returns
+    -------
+    dict of pl.DataFrame
+        For each set, one row per label, the best mean first: ``name, mean, max,
+        standard_deviation, evaluations`` (scores: alternatives x datasets), ``best`` (the
+        alternative with the highest score) and ``dataset`` (where it has it).
+    """
+    import polars as pl
+
+    scores = comparison.by_dataset(comparison.scores)
+    dataset, alternative = np.nonzero(~np.isnan(scores))
+    frame = pl.DataFrame(
+        {
+            "score": scores[dataset, alternative],
+            "alternative": np.array(comparison.alternatives)[alternative].tolist(),
+            "dataset": np.array(comparison.dataset_names)[dataset].tolist(),
+        }
+    )
+    highest = pl.col("score").arg_max()
+    return {
+        component: frame.with_columns(
+            pl.Series("name", np.array(labels)[alternative].tolist(), dtype=pl.String)
+        )
+        .group_by("name")
+        .agg(
+            pl.col("score").mean().alias("mean"),
+            pl.col("score").max().alias("max"),
+            pl.col("score").std(ddof=0).alias("standard_deviation"),
+            pl.len().alias("evaluations"),
+            pl.col("alternative").get(highest).alias("best"),
+            pl.col("dataset").get(highest),
+        )
+        .sort("mean", "name", descending=[True, False])
+        for component, labels in comparison.components.items()
     }

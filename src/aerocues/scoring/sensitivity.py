@@ -77,3 +77,17 @@ def by_criterion_left_out(scores: Scores) -> Variants:
             },
         }
     )
+
+
+def mean_correlation(found: Sequence[Variants]) -> Array:
+    """(variants, variants) mean over datasets of the correlations under the same variants.
+
+    NaN where no dataset has a defined one, or the variants differ.
+    """
+    if len({each.names for each in found}) != 1:
+        return np.full((len(found[0].names),) * 2, np.nan)
+    stacked = np.stack([each.correlation for each in found])
+    known = ~np.isnan(stacked)
+    total, number = np.where(known, stacked, 0).sum(axis=0), known.sum(axis=0)
+    mean = np.full(total.shape, np.nan)
+    return np.asarray(np.divide(total, number, out=mean, where=number > 0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,10 +13,11 @@ from aerocues.defaults import SHORTLIST
 from aerocues.errors import MethodUnavailableError, ScoreError
 from aerocues.phrases import count
 from aerocues.scoring.agreement import Agreement, agreement
-from aerocues.scoring.correlation import criteria_correlation
+from aerocues.scoring.correlation import correlation_frame, criteria_correlation
 from aerocues.scoring.cues import Scores
 from aerocues.scoring.friedman import CriticalDifference, critical_difference
 from aerocues.scoring.hierarchy import hierarchy
+from aerocues.scoring.matcher_times import matcher_times
 from aerocues.scoring.pareto import pareto_of_criteria
 from aerocues.scoring.rank_reversal import RankReversal, rank_reversal
 from aerocues.scoring.sensitivity import Variants, by_aggregation, by_alpha, by_criterion_left_out
@@ -50,6 +51,8 @@ class Validation:
         Pearson's correlation.
     hierarchies : dict of pl.DataFrame
         By component.
+    matcher_times : mapping of str to pl.DataFrame
+        Speed with each matcher against brute force, by component; see `matcher_times`.
     pareto_criteria : tuple of str
         Speed and quality; empty if the table has no such criteria.
     pareto_front : (alternatives on the front,) int64
@@ -67,6 +70,7 @@ class Validation:
     agreement: Agreement | str
     criteria_correlation: NDArray[np.float64]
     hierarchies: dict[str, pl.DataFrame]
+    matcher_times: Mapping[str, pl.DataFrame]
     pareto_criteria: tuple[str, ...]
     pareto_front: NDArray[np.int64]
     rank_reversal: RankReversal | None
@@ -104,6 +108,10 @@ class Validation:
             table.criterion_names, self.criteria_correlation
         )
         found |= {f"Scores of {name}": frame.head(top) for name, frame in self.hierarchies.items()}
+        speed = self.pareto_criteria[0] if self.pareto_criteria else ""
+        found |= {
+            f"Matchers by {name}: {speed}": frame for name, frame in self.matcher_times.items()
+        }
         if self.pareto_criteria:
             columns = [table.criterion_names.index(name) for name in self.pareto_criteria]
             found["Pareto front"] = pl.DataFrame(
@@ -122,14 +130,6 @@ class Validation:
                 pl.DataFrame({"name": each.alternatives, "mean rank": each.mean_ranks})
             )
         return found
-
-
-def correlation_frame(names: Sequence[str], values: NDArray[np.float64]) -> pl.DataFrame:
-    """A matrix with the names of its rows in the first column; undefined values are null."""
-    import polars as pl
-
-    columns = dict(zip(names, np.asarray(values).T, strict=True))
-    return pl.DataFrame({"name": list(names), **columns}, nan_to_null=True)
 
 
 def _of_variants(found: Variants | Agreement) -> pl.DataFrame:
@@ -173,6 +173,7 @@ def validate(
         agreement=_agreement(scores),
         criteria_correlation=criteria_correlation(scores),
         hierarchies=hierarchy(scores),
+        matcher_times=matcher_times(scores, chosen[0]) if chosen else {},
         pareto_criteria=chosen,
         pareto_front=pareto_of_criteria(scores, *chosen) if chosen else np.array([], np.int64),
         rank_reversal=rank_reversal(scores, seed=seed) if len(scores.order) > 1 else None,
