@@ -68,6 +68,8 @@ class Mutual:
 
     title = "mutual neighbours in numpy"
     dtypes = {"L2": ("float32",)}
+    takes_descriptors = ("Patches", "SIFT")
+    upright = True
 
     def match(self, features_1, features_2, norm):
         assert norm == "L2"

@@ -77,7 +77,9 @@ def test_every_kind_of_plug_in_is_listed_with_where_it_comes_from(arena: Methods
     assert row.parameters == {"step": 1}
     assert arena.descriptors["PATCHES"].dtype == "float32"
     assert arena.descriptors["CORNER_BITS"].bit_string
-    assert arena.matchers["MUTUAL"].title == "mutual neighbours in numpy"
+    mutual = arena.matchers["MUTUAL"]
+    assert mutual.title == "mutual neighbours in numpy"
+    assert (mutual.takes_descriptors, mutual.upright) == (("PATCHES", "SIFT"), True)
 
 
 def test_the_methods_of_opencv_stay_as_they_are(arena: Methods) -> None:
@@ -112,8 +114,8 @@ def test_plug_ins_combine_with_opencv_by_type_and_norm(arena: Methods) -> None:
     assert "CORNERS-AKAZE-HAM-BF" not in chosen
     for text, words in (
         ("ORB-CORNER_BITS-HAM-BF", "needs what only keypoints of CORNER_BITS carry"),
-        ("ORB-ORB-HAM-MUTUAL", "MUTUAL does not know the norm HAM"),
-        ("ORB-ORB-L2-MUTUAL", "needs float32 descriptors"),
+        ("SIFT-SIFT-HAM-MUTUAL", "MUTUAL does not know the norm HAM"),
+        ("ORB-ORB-L2-MUTUAL", "MUTUAL matches PATCHES or SIFT descriptors only, not ORB"),
         ("CORNERS-PATCHES-HAM-BF", "PATCHES descriptors are float32 numbers"),
     ):
         assert words in (why_incompatible(Combination.parse(text), arena) or "")
@@ -226,6 +228,13 @@ class NoTypes:
 class OtherTypes:
     dtypes = {"L2": ("float32", "int8")}
 
+class Standing:
+    upright = 1
+
+class Choosy:
+    dtypes = {"L2": ("float32",)}
+    takes_descriptors = (3,)
+
 class Evil(type):
     @property
     def reference(cls):
@@ -250,6 +259,8 @@ class Asked(metaclass=Evil):
         ("matchers", "unfit.methods:ListedTypes", "norms to descriptor types, not a list"),
         ("matchers", "unfit.methods:NoTypes", "TypeError"),
         ("matchers", "unfit.methods:OtherTypes", "'int8'"),
+        ("detectors", "unfit.methods:Standing", "'upright' must be True or False"),
+        ("matchers", "unfit.methods:Choosy", "'takes_descriptors' must be names"),
         ("detectors", "unfit.methods:Asked", "RuntimeError: not to be asked"),
         ("detectors", "unfit.leaving:Anything", "SystemExit: 3"),
         ("detectors", "unfit.silent:Anything", "ImportError"),

@@ -11,6 +11,7 @@ import pytest
 
 from aerocues.errors import MethodUnavailableError, SelectionError
 from aerocues.methods import plugins
+from aerocues.methods.explanation import explain
 from aerocues.methods.plugins import installed_methods, register, register_class
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.selection import select
@@ -52,6 +53,19 @@ class None_:
         return Matches()
 
 
+class OfPixels(None_):
+    takes_descriptors = ("pixels",)
+    upright = True
+
+
+class Unsure(None_):
+    upright = "sometimes"
+
+
+class Numbers(None_):
+    takes_descriptors = (1, 2)
+
+
 class Odd:
     dtype = "float64"
 
@@ -88,6 +102,22 @@ def test_each_kind_is_listed_and_combined(module: str) -> None:
     assert methods.problems == ()
 
 
+def test_a_matcher_takes_the_descriptors_that_it_was_made_for(module: str) -> None:
+    register("descriptor", "PIXELS", f"{module}:Pixels")
+    register("matcher", "OFPIXELS", f"{module}:OfPixels")
+    methods = installed_methods()
+    assert methods.matchers["OFPIXELS"].upright
+    assert not methods.descriptors["PIXELS"].upright
+    chosen = select(methods, "*-OFPIXELS")
+    assert {each.descriptor for each in chosen} == {"PIXELS"}
+    assert explain("SIFT-PIXELS-L2-OFPIXELS", methods) == "SIFT-PIXELS-L2-OFPIXELS runs"
+    for text in ("SIFT-SIFT-L2-OFPIXELS", "ORB-ORB-HAM-OFPIXELS"):
+        told = explain(text, methods)
+        assert told.startswith(f"{text} cannot run: OFPIXELS matches PIXELS descriptors only")
+        with pytest.raises(SelectionError, match="PIXELS descriptors only"):
+            select(methods, text)
+
+
 def test_a_class_of_a_module_stands_for_its_name(module: str) -> None:
     register("detector", "CORNERS", importlib.import_module(module).Corners)
     assert installed_methods().detectors["CORNERS"].factory == "own_methods:Corners"
@@ -117,6 +147,8 @@ def test_changed_source_makes_another_method(module: str, tmp_path: Path) -> Non
         ("detector", "CORNERS", "missing_module:Corners", MethodUnavailableError),
         ("detector", "CORNERS", "no reference", MethodUnavailableError),
         ("descriptor", "ODD", "own_methods:Odd", MethodUnavailableError),
+        ("matcher", "UNSURE", "own_methods:Unsure", MethodUnavailableError),
+        ("matcher", "NUMBERS", "own_methods:Numbers", MethodUnavailableError),
     ],
 )
 def test_what_cannot_be_registered_is_refused(

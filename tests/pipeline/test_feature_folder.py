@@ -157,10 +157,12 @@ def test_times_come_back_as_they_were(views: Dataset, tmp_path: Path) -> None:
         assert found[1] == taken
         assert np.array_equal(found[0].xy, keypoints.xy)
         rows = np.arange(160, dtype=np.uint8).reshape(5, 32)
-        folder.keep_described(image, "ORB", "ORB", Described(Features(keypoints, rows), taken))
+        features = Features(keypoints, rows, (640, 480))
+        folder.keep_described(image, "ORB", "ORB", Described(features, taken))
         described = folder.described(image, "ORB", "ORB")
         assert described is not None
         assert described.time == taken
+        assert described.features.image_size == (640, 480)
         assert np.array_equal(described.features.descriptors, rows)
         assert described.features.descriptors.dtype == np.uint8
     assert folder.described(image, "ORB", "BRIEF") is None

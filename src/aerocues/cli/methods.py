@@ -105,6 +105,7 @@ def _describe(row: Row) -> dict[str, Any]:
         "parameters": dict(row.parameters),
         "origin": row.origin,
         "reference": row.reference,
+        "upright": row.upright,
         "unavailable": row.unavailable,
     }
 
@@ -125,7 +126,12 @@ def _facts(found: Methods, preset: str) -> dict[str, Any]:
         ],
         "norms": [{"name": row.name, "title": row.title} for row in found.norms.values()],
         "matchers": [
-            {**_describe(row), "title": row.title} for row in found.every_matcher.values()
+            {
+                **_describe(row),
+                "title": row.title,
+                "takes_descriptors": list(row.takes_descriptors),
+            }
+            for row in found.every_matcher.values()
         ],
         "problems": list(found.problems),
     }
@@ -135,7 +141,7 @@ def _parameters(row: Row) -> str:
     if row.unavailable:
         return f"unavailable: {row.unavailable}"
     parameters = ", ".join(f"{name}={value}" for name, value in row.parameters.items())
-    return parameters or "no parameters"
+    return f"{parameters or 'no parameters'}{'; upright' if row.upright else ''}"
 
 
 def _print_methods(found: Methods, preset: str) -> None:

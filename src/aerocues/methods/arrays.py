@@ -106,10 +106,14 @@ class Features:
     keypoints : Keypoints
         N keypoints.
     descriptors : (N, D) uint8 or float32
+    image_size : tuple of int, optional
+        Width and height in pixels of the image in which `keypoints` lie. Matchers are always told;
+        what extractors and descriptors say of it is not used.
     """
 
     keypoints: Keypoints
     descriptors: DescriptorArray
+    image_size: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         if self.descriptors.ndim != 2 or len(self.descriptors) != len(self.keypoints):
@@ -125,14 +129,16 @@ class Features:
         kind = f"{self.descriptors.shape[1]} {self.descriptors.dtype}"
         return f"Features: {len(self):,} keypoints with descriptors of {kind}"
 
+    def take(self, which: NDArray[np.bool_] | NDArray[np.integer[Any]]) -> Features:
+        """The features selected by a mask or by indices, in that order."""
+        return Features(self.keypoints.take(which), self.descriptors[which], self.image_size)
+
 
 def finite_features(keypoints: Keypoints, descriptors: DescriptorArray) -> Features:
     """Features without the rows whose descriptor is not finite: nothing can match those."""
     finite = np.asarray(np.isfinite(descriptors).all(axis=1))
-    if finite.all():
-        return Features(keypoints, descriptors)
-    kept: Any = descriptors[finite]
-    return Features(keypoints.take(finite), kept)
+    found = Features(keypoints, descriptors)
+    return found if finite.all() else found.take(finite)
 
 
 @dataclass(frozen=True, eq=False)

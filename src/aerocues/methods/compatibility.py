@@ -37,6 +37,15 @@ def _breaking_keypoints(
     return descriptor.not_detectors.get(combination.detector)
 
 
+def _foreign_descriptors(
+    combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
+) -> str | None:
+    allowed = matcher.takes_descriptors
+    if not allowed or descriptor.name in allowed:
+        return None
+    return f"{matcher.name} matches {' or '.join(allowed)} descriptors only, not {descriptor.name}"
+
+
 def _unknown_norm(
     combination: Combination, descriptor: DescriptorRow, matcher: MatcherRow
 ) -> str | None:
@@ -71,6 +80,7 @@ def _type_of_matcher(
 RULES: tuple[Rule, ...] = (
     Rule("the descriptor needs keypoints of its own family", _foreign_keypoints),
     Rule("the detector's keypoints break the descriptor", _breaking_keypoints),
+    Rule("the matcher is made for other descriptors", _foreign_descriptors),
     Rule("the matcher does not know the norm", _unknown_norm),
     Rule("Hamming norm on descriptors that are numbers", _bits_of_numbers),
     Rule("the matcher cannot take the descriptor's type", _type_of_matcher),

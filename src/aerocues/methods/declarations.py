@@ -30,6 +30,10 @@ class Declaration:
         Type of the descriptors that a descriptor or extractor gives.
     dtypes : mapping of norm to descriptor types
         What a matcher takes.
+    takes_descriptors : tuple of str
+        Names of the only descriptors that a matcher takes, in capitals; empty: all.
+    upright : bool
+        Whether it expects images that are not turned against each other.
     problem : str or None
         Why it cannot be used; the rest is then empty.
     """
@@ -39,6 +43,8 @@ class Declaration:
     parameters: Mapping[str, Value] = field(default_factory=dict)
     dtype: DescriptorType = "float32"
     dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(default_factory=dict)
+    takes_descriptors: tuple[str, ...] = ()
+    upright: bool = False
     problem: str | None = None
 
 
@@ -60,6 +66,8 @@ def read_declaration(entry: EntryPoint, group: str) -> Declaration:
             _parameters(factory),
             _dtype(getattr(factory, "dtype", "float32"), "dtype"),
             _dtypes(factory) if group == "matchers" else {},
+            _takes_descriptors(factory) if group == "matchers" else (),
+            _upright(factory),
         )
     except (_UnfitError, ImportError) as error:
         problem = str(error) or type(error).__name__
@@ -110,3 +118,18 @@ def _dtypes(factory: Any) -> dict[str, tuple[DescriptorType, ...]]:
         )
         for norm, dtypes in declared.items()
     }
+
+
+def _takes_descriptors(factory: Any) -> tuple[str, ...]:
+    declared = getattr(factory, "takes_descriptors", ())
+    names = (declared,) if isinstance(declared, str) else tuple(declared)
+    if not all(isinstance(name, str) for name in names):
+        raise _UnfitError(f"its 'takes_descriptors' must be names of descriptors, not {declared!r}")
+    return tuple(name.upper() for name in names)
+
+
+def _upright(factory: Any) -> bool:
+    declared = getattr(factory, "upright", False)
+    if not isinstance(declared, bool):
+        raise _UnfitError(f"its 'upright' must be True or False, not {declared!r}")
+    return declared

@@ -41,6 +41,8 @@ class DetectorRow:
         turned by 90 and 180 degrees or mirrored.
     unbiased : mapping
         Parameters besides that put keypoints where they really are, under presets that ask for it.
+    upright : bool
+        Whether it expects images that are not turned against each other.
     origin : str
         ``opencv`` or the name of the distribution that brings it.
     unavailable : str or None
@@ -58,6 +60,7 @@ class DetectorRow:
     threshold: tuple[str, float] | None = None
     bias: str = ""
     unbiased: Mapping[str, Value] = field(default_factory=dict)
+    upright: bool = False
     origin: str = OPENCV
     unavailable: str | None = None
 

@@ -5,6 +5,8 @@ one of the groups ``aerocues.detectors``, ``aerocues.descriptors``, ``aerocues.e
 (detector and descriptor in one) and ``aerocues.matchers``. The entry point's name, in upper case,
 is the method's name; its object is called with the method's parameters (none by default) and
 returns an object of the kind below.
+
+Any class may state ``upright = True``: it expects images that are not turned against each other.
 """
 
 from __future__ import annotations
@@ -42,8 +44,12 @@ class Matcher(Protocol):
     """Matches features one to one.
 
     Its class states ``dtypes``: for each norm that it knows, the types of descriptors that it
-    takes, such as ``{"L2": ("float32",)}``.
+    takes, such as ``{"L2": ("float32",)}``. It may state ``takes_descriptors``, the names of the
+    only descriptors that it was made for, such as ``("XFEAT",)``: with others it is incompatible.
     """
 
     def match(self, features_1: Features, features_2: Features, norm: str) -> Matches:
-        """Mutual matches: each feature takes part in one match at most."""
+        """Mutual matches: each feature takes part in one match at most.
+
+        ``image_size`` of both features, width and height in pixels, is always given.
+        """

@@ -35,7 +35,9 @@ class MatcherRow:
     factory : str
         The class of OpenCV that matches, a key of `aerocues.methods.making.OPENCV_MATCHERS`, or
         ``module:attribute`` of a plug-in or of aerocues.
-    origin, unavailable
+    takes_descriptors : tuple of str
+        The only descriptors that it matches; empty: all of its types.
+    upright, origin, unavailable
         As for a detector.
     """
 
@@ -45,6 +47,8 @@ class MatcherRow:
     parameters: Mapping[str, Mapping[str, Value]] = field(repr=False)
     dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(repr=False)
     factory: str
+    takes_descriptors: tuple[str, ...] = ()
+    upright: bool = False
     origin: str = OPENCV
     unavailable: str | None = None
 

@@ -25,7 +25,7 @@ SECONDS = 30.0
 """That an import may take; packages of neural networks take up to 10."""
 LAST_WORDS = 120
 PRINTS = "it prints to standard output when it is imported ({words}), which programs read"
-FORM = 1
+FORM = 2
 """Number of the form of a remembered declaration."""
 
 
@@ -106,7 +106,8 @@ def _declaration(stored: dict[str, Any]) -> Declaration:
     dtypes = {norm: tuple(known) for norm, known in stored.pop("dtypes").items()}
     if stored["dtype"] not in get_args(DescriptorType):
         raise ValueError(f"no type {stored['dtype']}")
-    return Declaration(**stored, dtypes=dtypes)
+    taken = tuple(stored.pop("takes_descriptors"))
+    return Declaration(**stored, dtypes=dtypes, takes_descriptors=taken)
 
 
 def _states(entry: EntryPoint) -> Iterator[object]:

@@ -182,6 +182,7 @@ def _detector(plug_in: _PlugIn, declared: Declaration) -> DetectorRow:
         plug_in.entry.value,
         declared.parameters,
         declared.reference,
+        upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
     )
@@ -195,6 +196,7 @@ def _descriptor(plug_in: _PlugIn, declared: Declaration) -> DescriptorRow:
         declared.reference,
         declared.dtype,
         only_detectors=(plug_in.name,) if plug_in.group == "extractors" else (),
+        upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
     )
@@ -208,6 +210,8 @@ def _matcher(plug_in: _PlugIn, declared: Declaration) -> MatcherRow:
         dict.fromkeys(declared.dtypes, declared.parameters),
         declared.dtypes or {"L2": ("float32",), "HAM": ("uint8",)},
         factory=plug_in.entry.value,
+        takes_descriptors=declared.takes_descriptors,
+        upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
     )

@@ -45,7 +45,7 @@ class SampledBruteForce:
             raw, time = self.clock.time(lambda: self.brute_force.call(first, second))
             return self.brute_force.read(raw), time
         chosen = np.linspace(0, len(second) - 1, rows).round().astype(np.intp)
-        part = Features(second.keypoints.take(chosen), second.descriptors[chosen])
+        part = second.take(chosen)
         _, time = self.clock.time(lambda: self.brute_force.call(first, part))
         # Loads numba, which other timings do without.
         from aerocues.methods.exact.matching import mutual_nearest

@@ -28,6 +28,7 @@ from aerocues.pipeline.protocol import MEASUREMENT_VERSION, MeasurementProtocol
 from aerocues.results.hashing import content_hash
 
 TIME = "time"
+IMAGE_SIZE = "image_size"
 
 
 def checked_folder(folder: Path) -> Path:
@@ -92,18 +93,22 @@ class FeatureFolder:
     def described(self, image: Image, detector: str, descriptor: str) -> Described | None:
         """What a descriptor made of an image's keypoints; None where that is not here."""
         file = self._file(image, detector, descriptor)
-        found = read_arrays(file, (*KEYPOINTS, "descriptors", TIME))
+        found = read_arrays(file, (*KEYPOINTS, "descriptors", IMAGE_SIZE, TIME))
         if found is None:
             return None
         descriptors: Any = found["descriptors"]
-        return Described(Features(keypoints_of(found), descriptors), _read_time(found[TIME]))
+        width, height = found[IMAGE_SIZE].tolist()
+        features = Features(keypoints_of(found), descriptors, (width, height))
+        return Described(features, _read_time(found[TIME]))
 
     def keep_described(
         self, image: Image, detector: str, descriptor: str, described: Described
     ) -> None:
         """Keep what a descriptor made of an image's keypoints."""
-        arrays = keypoint_arrays(described.features.keypoints)
-        arrays |= {"descriptors": described.features.descriptors, TIME: _written(described.time)}
+        features = described.features
+        arrays = keypoint_arrays(features.keypoints)
+        arrays |= {"descriptors": features.descriptors, TIME: _written(described.time)}
+        arrays[IMAGE_SIZE] = np.array(features.image_size)
         self._write(self._file(image, detector, descriptor), arrays)
 
     def _file(self, image: Image, detector: str, descriptor: str = "") -> Path:

@@ -138,7 +138,7 @@ class FeatureSource:
         if not len(found.keypoints):
             row = self._methods.descriptors[combination.descriptor]
             nothing = np.empty((0, max(row.columns, 1)), row.dtype)
-            return TimedFeatures(Features(found.keypoints, nothing), seconds)
+            return TimedFeatures(Features(found.keypoints, nothing, found.size), seconds)
         described = self.described(found, combination)
         return TimedFeatures(described.features, seconds + described.time.cpu)
 

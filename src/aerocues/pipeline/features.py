@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import cv2
@@ -106,6 +106,12 @@ class ImageFeatures:
     described: dict[str, Described | Failure] = field(default_factory=dict)
     prepared: dict[type, Any] = field(default_factory=dict)
 
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        height, width = self.pixels.bgr.shape[:2]
+        return width, height
+
 
 def read_inner(image: Image) -> Pixels:
     """The pixels of an image, of which those are valid that keypoints may lie on.
@@ -180,7 +186,8 @@ class FeatureExtractor:
         raw, time = run_stage(
             what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
         )
-        return Described(run_stage(what, lambda: descriptor.read(raw)), time)
+        found = run_stage(what, lambda: descriptor.read(raw))
+        return Described(replace(found, image_size=image.size), time)
 
 
 def _centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -155,5 +155,4 @@ def stage_call(stage: str, combination: Combination, images: str, pair: int = NO
 
 
 def _first_ones(features: Features) -> Features:
-    kept = np.arange(min(len(features), WARM_UP_FEATURES))
-    return Features(features.keypoints.take(kept), features.descriptors[kept])
+    return features.take(np.arange(min(len(features), WARM_UP_FEATURES)))
