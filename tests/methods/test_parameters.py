@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -10,9 +11,10 @@ import numpy as np
 import pytest
 
 from aerocues.errors import MethodUnavailableError
+from aerocues.methods.combination import NONE
 from aerocues.methods.making import make_descriptor, make_detector, make_matcher
 from aerocues.methods.parameters import Value, create_opencv, opencv_class
-from aerocues.methods.registry import Methods
+from aerocues.methods.registry import Methods, opencv_methods
 
 Values = dict[str, Any]
 
@@ -173,6 +175,19 @@ BYTES = {
     "TEBLID": 32,
     "BOOST": 32,
 }
+
+
+@pytest.fixture(scope="module")
+def methods() -> Methods:
+    """The methods of the thesis, without those on request."""
+    every = opencv_methods()
+    return replace(
+        every,
+        detectors={name: row for name, row in every.detectors.items() if not row.on_request},
+        descriptors={name: row for name, row in every.descriptors.items() if name in BYTES},
+        norms={name: row for name, row in every.norms.items() if name != NONE},
+        matchers={name: row for name, row in every.matchers.items() if not row.on_request},
+    )
 
 
 def assert_holds(native: Any, expected: Values) -> None:

@@ -32,7 +32,7 @@ def _without_plugins(context: typer.Context, asked: bool) -> bool:
     if asked:
         import os
 
-        from aerocues.methods.plugins import CHOICE, NONE
+        from aerocues.methods.plugins import CHOICE, NO_PLUGINS
 
         before = os.environ.get(CHOICE)
 
@@ -42,7 +42,7 @@ def _without_plugins(context: typer.Context, asked: bool) -> bool:
                 os.environ[CHOICE] = before
 
         context.call_on_close(restore)
-        os.environ[CHOICE] = NONE
+        os.environ[CHOICE] = NO_PLUGINS
     return asked
 
 

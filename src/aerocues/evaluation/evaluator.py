@@ -9,6 +9,7 @@ from aerocues.evaluation.rows import begin_row
 from aerocues.evaluation.truth_comparison import TwoViews
 from aerocues.evaluation.two_views import TwoViewMeasurement, record_time
 from aerocues.evaluation.unit import Context, PairWork, Unit
+from aerocues.methods.combination import Combination
 from aerocues.phrases import printable
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_folder import FeatureFolder
@@ -59,18 +60,30 @@ class Evaluator:
             self._two_views.begin_row(row)
             try:
                 first, second = map(unless_failed, detected)
-                _record_detection(row, first, second)
-                described = (
-                    self._features.described(first, combination, pair.index),
-                    self._features.described(second, combination, pair.index),
-                )
-                views = TwoViews(pair, (first, second), described)
-                row["status"] = self._two_views.measure(row, views, combination)
+                row["status"] = self._measure(row, pair, (first, second), combination)
             except StageError as failure:
                 row["status"], row["message"] = failure.status, failure.message
             message = self._features.problem if row["message"] is None else row["message"]
             row["message"] = None if message is None else printable(message)
             yield add_metrics(row)
+
+    def _measure(
+        self,
+        row: Row,
+        pair: Pair,
+        images: tuple[ImageFeatures, ImageFeatures],
+        combination: Combination,
+    ) -> str:
+        """Fill the row of a combination; the status."""
+        first, second = images
+        if combination.of_pairs:
+            return self._two_views.measure_images(row, pair, images, combination)
+        _record_detection(row, first, second)
+        described = (
+            self._features.described(first, combination, pair.index),
+            self._features.described(second, combination, pair.index),
+        )
+        return self._two_views.measure(row, TwoViews(pair, images, described), combination)
 
 
 def _record_detection(row: Row, first: ImageFeatures, second: ImageFeatures) -> None:

@@ -6,12 +6,14 @@ from aerocues.datasets.dataset import Pair
 from aerocues.evaluation.reference_comparison import ReferenceComparison
 from aerocues.evaluation.truth_comparison import Matched, TruthComparison, TwoViews
 from aerocues.evaluation.unit import Context
+from aerocues.methods.arrays import Matches
 from aerocues.methods.combination import Combination
-from aerocues.pipeline.clock import Clock, StageTime
+from aerocues.pipeline.clock import NO_TIME, Clock, StageTime
 from aerocues.pipeline.feature_source import Announce
+from aerocues.pipeline.features import Described, ImageFeatures
 from aerocues.pipeline.pair_stages import PairStages, matched_points
 from aerocues.pipeline.reference_source import ReferenceSource
-from aerocues.results.metrics import Row
+from aerocues.results.metrics import STAGES_OF_IMAGES, Row
 
 
 class TwoViewMeasurement:
@@ -51,6 +53,31 @@ class TwoViewMeasurement:
         names, number = f"{views.pair.image_1} and {views.pair.image_2}", views.pair.index
         matches, time = self._stages.match(combination, (first, second), names, number)
         record_time(row, "match_seconds", time)
+        return self._judge(row, views, matches, combination)
+
+    def measure_images(
+        self,
+        row: Row,
+        pair: Pair,
+        images: tuple[ImageFeatures, ImageFeatures],
+        combination: Combination,
+    ) -> str:
+        """As `measure`, of a pair matcher: there is no stage before the match."""
+        for stage in STAGES_OF_IMAGES:
+            for side in (1, 2):
+                record_time(row, f"{stage}_seconds_{side}", NO_TIME)
+        names = f"{pair.image_1} and {pair.image_2}"
+        found, time = self._stages.match_images(combination, images, names, pair.index)
+        record_time(row, "match_seconds", time)
+        row["keypoints_1"] = row["keypoints_2"] = len(found.matches)
+        row["descriptor_bytes"] = 0
+        first, second = (Described(features, NO_TIME) for features in found.features)
+        return self._judge(row, TwoViews(pair, images, (first, second)), found.matches, combination)
+
+    def _judge(self, row: Row, views: TwoViews, matches: Matches, combination: Combination) -> str:
+        """Verify matches and compare them with what is known; the status."""
+        names, number = f"{views.pair.image_1} and {views.pair.image_2}", views.pair.index
+        first, second = (described.features for described in views.described)
         row["matches"] = len(matches)
         points, order = matched_points(first, second, matches)
         verdict = self._stages.verify(combination, points, order, names, number)

@@ -79,8 +79,10 @@ class Flight:
         return self.scene.place(self.combination) / DATABASE
 
     def descriptors(self, name: str) -> DescriptorArray:
-        """The descriptors of an image, a row for each of its keypoints."""
+        """The descriptors of an image, a row for each keypoint: empty ones of a pair matcher."""
         scene, one = self.scene, self.combination
+        if one.of_pairs:
+            return np.empty((len(self.linked.keypoints[name]), 0), np.float32)
         folder = FeatureFolder(scene.features, scene.methods, scene.measurement(), scene.machine)
         image = smaller(scene.dataset.image(name), scene.protocol.features_width)
         found = folder.described(image, one.detector, one.descriptor)

@@ -157,7 +157,7 @@ def recipe_of(combination: str | Combination, measured: Measured) -> Recipe:
     protocol = MeasurementProtocol.of_preset(measured.preset, seed=measured.seed, limit=limit)
     detector = methods.detectors[one.detector]
     descriptor = methods.descriptor_on(one.descriptor, one.detector)
-    matcher = methods.every_matcher[one.matcher]
+    matcher = methods.matchers[one.matcher]
     foreign = [row.name for row in (detector, descriptor, matcher) if row.origin != OPENCV]
     if foreign and foreign != [EXACT.name]:
         raise SelectionError(

@@ -8,11 +8,16 @@ from dataclasses import dataclass
 from aerocues.errors import SelectionError
 
 METHOD_NAME = re.compile(r"[A-Z0-9_]+")
+NONE = "NONE"
+"""The descriptor and the norm of pair matchers, which need neither."""
 
 
 @dataclass(frozen=True, order=True)
 class Combination:
     """What is evaluated; its text form is ``ORB-BEBLID-HAM-BF``.
+
+    That of a pair matcher is ``PIXELMAP-NONE-NONE-PIXELMAP``: it finds the positions itself, and
+    needs neither descriptors nor a norm.
 
     Parameters
     ----------
@@ -40,6 +45,16 @@ class Combination:
 
     def __str__(self) -> str:
         return f"{self.detector}-{self.descriptor}-{self.norm}-{self.matcher}"
+
+    @property
+    def of_pairs(self) -> bool:
+        """Whether it is that of a pair matcher."""
+        return self.descriptor == NONE
+
+    @classmethod
+    def of_pair_matcher(cls, name: str) -> Combination:
+        """The combination of a pair matcher."""
+        return cls(name, NONE, NONE, name)
 
     @classmethod
     def parse(cls, text: str) -> Combination:

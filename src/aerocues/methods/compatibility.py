@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from aerocues.methods.combination import Combination
+from aerocues.methods.combination import NONE, Combination
 from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.matchers import MatcherRow
 from aerocues.methods.registry import Methods
@@ -87,6 +87,23 @@ RULES: tuple[Rule, ...] = (
 )
 
 
+OF_PAIRS = "pair matchers match images as a whole, others descriptors"
+
+
+def _why_not_of_pairs(combination: Combination, methods: Methods) -> str | None:
+    """Why parts of a pair matcher and of other combinations do not fit together."""
+    whole = Combination.of_pair_matcher(combination.matcher)
+    if methods.matchers[combination.matcher].of_pairs:
+        if combination == whole:
+            return None
+        return f"{combination.matcher} is a pair matcher, which matches images as a whole: {whole}"
+    if methods.detectors[combination.detector].of_pairs:
+        return f"{combination.detector} is a pair matcher and detects nothing in a single image"
+    if NONE in (combination.descriptor, combination.norm):
+        return f"{combination.matcher} compares descriptors under a norm, and {NONE} is neither"
+    return None
+
+
 def incompatibility(combination: Combination, methods: Methods) -> tuple[str, str] | None:
     """The cause and the reason why `combination` cannot run, or None if it can.
 
@@ -96,8 +113,10 @@ def incompatibility(combination: Combination, methods: Methods) -> tuple[str, st
         If one of the four names does not exist.
     """
     methods.require(combination)
+    if reason := _why_not_of_pairs(combination, methods):
+        return OF_PAIRS, reason
     descriptor = methods.descriptors[combination.descriptor]
-    matcher = methods.every_matcher[combination.matcher]
+    matcher = methods.matchers[combination.matcher]
     for rule in RULES:
         reason = rule.reason(combination, descriptor, matcher)
         if reason is not None:
@@ -124,11 +143,7 @@ def why_meaningless(combination: Combination, methods: Methods) -> str | None:
 
 def why_unavailable(combination: Combination, methods: Methods) -> str | None:
     """Why a method of `combination` cannot be used on this machine, or None if all can."""
-    for row in (
-        methods.detectors[combination.detector],
-        methods.descriptors[combination.descriptor],
-        methods.every_matcher[combination.matcher],
-    ):
+    for row in methods.rows(combination):
         if row.unavailable:
             return f"{row.name} is unavailable: {row.unavailable}"
     return None

@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import RULES, incompatibility, why_meaningless, why_unavailable
 from aerocues.methods.registry import Methods
-from aerocues.methods.selection import split_names, takes
+from aerocues.methods.selection import Asked, split_names
 
 UNAVAILABLE = "a method is unavailable here"
 MEANINGLESS = "runs but means nothing: L2 norm on strings of bits"
@@ -32,7 +32,22 @@ class Counts:
 
 def count_combinations(methods: Methods) -> Counts:
     """Count every combination of `methods` once."""
-    causes = Counter(_cause(combination, methods) for combination in methods.combinations())
+    return _counts(methods.combinations(), methods)
+
+
+def count_on_request(methods: Methods) -> dict[str, Counts]:
+    """Count what each set of methods on request adds to the others, by the name of the set."""
+    usual = frozenset(methods.combinations())
+    beyond = [each for each in methods.combinations(on_request=True) if each not in usual]
+    sets = {each: {row.on_request for row in methods.rows(each)} - {""} for each in beyond}
+    return {
+        name: _counts((each for each in beyond if sets[each] == {name}), methods)
+        for name in methods.sets
+    }
+
+
+def _counts(combinations: Iterable[Combination], methods: Methods) -> Counts:
+    causes = Counter(_cause(combination, methods) for combination in combinations)
     meaningless, unavailable = causes[MEANINGLESS], causes[UNAVAILABLE]
     return Counts(
         declared=causes.total(),
@@ -51,16 +66,14 @@ def named(
     descriptors: str | Iterable[str] | None = None,
 ) -> list[Combination]:
     """Every combination that the arguments of `select` name, runnable or not."""
-    wanted = split_names(patterns)
-    texts = [pattern for pattern in wanted if not pattern.startswith("!")] or ["*"]
-    unwanted = [pattern[1:] for pattern in wanted if pattern.startswith("!")]
+    asked = Asked.of(patterns, methods)
     kept_detectors = split_names(detectors) or ["*"]
     kept_descriptors = split_names(descriptors) or ["*"]
     return [
         combination
         for combination in methods.combinations(on_request=True)
-        if any(takes(text, combination, methods) for text in texts)
-        and not _matches(str(combination), unwanted)
+        if any(asked.takes(text, combination, methods) for text in asked.includes)
+        and not asked.leaves_out(combination)
         and _matches(combination.detector, kept_detectors)
         and _matches(combination.descriptor, kept_descriptors)
     ]

@@ -34,6 +34,8 @@ class Declaration:
         Names of the only descriptors that a matcher takes, in capitals; empty: all.
     upright : bool
         Whether it expects images that are not turned against each other.
+    on_request : str
+        The set of methods in which it is offered; empty: it always takes part.
     problem : str or None
         Why it cannot be used; the rest is then empty.
     """
@@ -45,6 +47,7 @@ class Declaration:
     dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(default_factory=dict)
     takes_descriptors: tuple[str, ...] = ()
     upright: bool = False
+    on_request: str = ""
     problem: str | None = None
 
 
@@ -68,6 +71,7 @@ def read_declaration(entry: EntryPoint, group: str) -> Declaration:
             _dtypes(factory) if group == "matchers" else {},
             _takes_descriptors(factory) if group == "matchers" else (),
             _upright(factory),
+            _on_request(factory),
         )
     except (_UnfitError, ImportError) as error:
         problem = str(error) or type(error).__name__
@@ -133,3 +137,10 @@ def _upright(factory: Any) -> bool:
     if not isinstance(declared, bool):
         raise _UnfitError(f"its 'upright' must be True or False, not {declared!r}")
     return declared
+
+
+def _on_request(factory: Any) -> str:
+    declared = getattr(factory, "on_request", "")
+    if not isinstance(declared, str) or not re.fullmatch(r"\w*", declared):
+        raise _UnfitError(f"its 'on_request' must be a name such as 'learned', not {declared!r}")
+    return declared.lower()

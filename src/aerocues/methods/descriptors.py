@@ -20,7 +20,7 @@ class DescriptorRow:
 
     Parameters
     ----------
-    name, factory, parameters, reference, unbiased, upright, origin, unavailable
+    name, factory, parameters, reference, unbiased, on_request, upright, origin, unavailable
         As for a detector.
     dtype : {"uint8", "float32"}
         Type of the descriptor's elements.
@@ -48,6 +48,7 @@ class DescriptorRow:
     not_detectors: Mapping[str, str] = field(default_factory=dict)
     needs_colour: bool = False
     unbiased: Mapping[str, Value] = field(default_factory=dict)
+    on_request: str = ""
     upright: bool = False
     origin: str = OPENCV
     unavailable: str | None = None

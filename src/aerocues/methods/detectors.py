@@ -41,6 +41,11 @@ class DetectorRow:
         turned by 90 and 180 degrees or mirrored.
     unbiased : mapping
         Parameters besides that put keypoints where they really are, under presets that ask for it.
+    of_pairs : bool
+        Whether it stands for the positions that a pair matcher finds, and detects nothing.
+    on_request : str
+        The set of methods in which it is offered: it then takes part only where it, or the set, is
+        named. Empty: it always takes part.
     upright : bool
         Whether it expects images that are not turned against each other.
     origin : str
@@ -60,6 +65,8 @@ class DetectorRow:
     threshold: tuple[str, float] | None = None
     bias: str = ""
     unbiased: Mapping[str, Value] = field(default_factory=dict)
+    of_pairs: bool = False
+    on_request: str = ""
     upright: bool = False
     origin: str = OPENCV
     unavailable: str | None = None

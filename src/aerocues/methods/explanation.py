@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from aerocues.errors import SelectionError
-from aerocues.methods.combination import Combination
 from aerocues.methods.compatibility import why_incompatible, why_meaningless, why_unavailable
 from aerocues.methods.registry import Methods
 from aerocues.methods.selection import runnable
@@ -24,12 +23,12 @@ def explain(text: str, methods: Methods) -> str:
     """
     if beginning := _beginning(text, methods):
         raise SelectionError(beginning)
-    combination = Combination.parse(text)
+    combination = methods.parse(text)
     for kind, name, known in (
         ("detector", combination.detector, methods.detectors),
         ("descriptor", combination.descriptor, methods.descriptors),
         ("norm", combination.norm, methods.norms),
-        ("matcher", combination.matcher, methods.every_matcher),
+        ("matcher", combination.matcher, methods.matchers),
     ):
         if name not in known:
             raise SelectionError(f"there is no {kind} {name}; {_close(name, known)}")
@@ -50,6 +49,8 @@ def explain(text: str, methods: Methods) -> str:
 def _beginning(text: str, methods: Methods) -> str | None:
     """Which combinations a text may be the beginning of; None if it is none."""
     start = f"{text.strip().upper()}-"
+    if text.strip().upper() in methods.pair_matchers:
+        return None
     whole = [str(each) for each in runnable(methods) if str(each).startswith(start)]
     if not whole:
         return None

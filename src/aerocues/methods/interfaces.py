@@ -2,16 +2,18 @@
 
 A program adds a method with `aerocues.register`. A package offers one through an entry point in
 one of the groups ``aerocues.detectors``, ``aerocues.descriptors``, ``aerocues.extractors``
-(detector and descriptor in one) and ``aerocues.matchers``. The entry point's name, in upper case,
-is the method's name; its object is called with the method's parameters (none by default) and
-returns an object of the kind below.
+(detector and descriptor in one), ``aerocues.matchers`` and ``aerocues.pair_matchers``. The entry
+point's name, in upper case, is the method's name; its object is called with the method's parameters
+(none by default) and returns an object of the kind below.
 
-Any class may state ``upright = True``: it expects images that are not turned against each other.
+Any class may state ``upright = True``: it expects images that are not turned against each other;
+and ``on_request``, the name of a set of methods that take part only where they are named, or with
+``+`` and the name of the set among the patterns.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +40,19 @@ class Extractor(Protocol):
 
     def extract(self, image: NDArray[np.uint8]) -> Features:
         """Features of `image`, (H, W, 3) uint8 in BGR order."""
+
+
+class PairMatcher(Protocol):
+    """Matches two images as a whole; its name alone is a combination."""
+
+    def match_pair(
+        self, image_1: NDArray[np.uint8], image_2: NDArray[np.uint8]
+    ) -> tuple[NDArray[np.floating[Any]], ...]:
+        """Positions that belong together: two (N, 2) arrays of pixels, and (N,) scores if any.
+
+        The centre of the top-left pixel is (0, 0). The larger a score, the surer the match.
+        Positions that are not finite are left out.
+        """
 
 
 class Matcher(Protocol):

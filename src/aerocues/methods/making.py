@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from aerocues.errors import MethodUnavailableError
 from aerocues.methods.arrays import DescriptorArray, Features, Keypoints, Matches, finite_features
+from aerocues.methods.combination import NONE
 from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,
@@ -19,6 +20,7 @@ from aerocues.methods.opencv import (
     OpenCVDescriptor,
     OpenCVDetector,
 )
+from aerocues.methods.pair_matching import ArrayPairMatcher
 from aerocues.methods.parameters import OPENCV, Value
 from aerocues.methods.plugins import load_factory
 from aerocues.methods.positions import EXACT_POSITIONS
@@ -158,9 +160,15 @@ def make_descriptor(methods: Methods, name: str, detector: str = "") -> Descript
     return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)
 
 
+def make_pair_matcher(methods: Methods, name: str) -> ArrayPairMatcher:
+    """Make the pair matcher `name`; MethodUnavailableError where it cannot be made."""
+    row = methods.matchers[name]
+    return ArrayPairMatcher(_plugin(row.factory, dict(row.parameters.get(NONE, {}))))
+
+
 def make_matcher(methods: Methods, name: str, norm: str) -> MatcherStage:
     """Make the matcher `name` for a norm; MethodUnavailableError where it cannot be made."""
-    row = methods.every_matcher[name]
+    row = methods.matchers[name]
     parameters = dict(row.parameters.get(norm, {}))
     if row.origin != OPENCV:
         return ArrayMatcher(_plugin(row.factory, parameters), norm)

@@ -37,7 +37,9 @@ class MatcherRow:
         ``module:attribute`` of a plug-in or of aerocues.
     takes_descriptors : tuple of str
         The only descriptors that it matches; empty: all of its types.
-    upright, origin, unavailable
+    of_pairs : bool
+        Whether it is a pair matcher: two images in, positions that belong together out.
+    on_request, upright, origin, unavailable
         As for a detector.
     """
 
@@ -48,6 +50,8 @@ class MatcherRow:
     dtypes: Mapping[str, tuple[DescriptorType, ...]] = field(repr=False)
     factory: str
     takes_descriptors: tuple[str, ...] = ()
+    of_pairs: bool = False
+    on_request: str = ""
     upright: bool = False
     origin: str = OPENCV
     unavailable: str | None = None
@@ -93,6 +97,7 @@ EXACT = MatcherRow(
     {"L2": {}, "HAM": {}},
     {"L2": ("float32", "uint8"), "HAM": ("uint8",)},
     factory="aerocues.methods.exact.matching:ExactMatcher",
+    on_request="exact",
     origin=AEROCUES,
 )
 """What aerocues itself adds to OpenCV's matchers."""

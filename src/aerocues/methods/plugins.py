@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from aerocues.errors import MethodUnavailableError, SelectionError
-from aerocues.methods.combination import METHOD_NAME
+from aerocues.methods.combination import METHOD_NAME, NONE
 from aerocues.methods.declarations import Declaration, read_declaration
-from aerocues.methods.descriptors import DescriptorRow
+from aerocues.methods.descriptors import DescriptorRow, DescriptorType
 from aerocues.methods.detectors import DetectorRow
 from aerocues.methods.matchers import MatcherRow
+from aerocues.methods.pair_matchers import OF_PAIRS
 from aerocues.methods.plugin_trial import tried_declaration
 from aerocues.methods.registry import Methods, opencv_methods
 
@@ -25,18 +26,20 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "descriptors": ("descriptor",),
     "extractors": ("detector", "descriptor"),
     "matchers": ("matcher",),
+    "pair_matchers": ("detector", "matcher"),
 }
 """The kinds of method that a plug-in of each group of entry points is."""
 
 
 CHOICE = "AEROCUES_PLUGINS"
-NONE = "none"
+NO_PLUGINS = "none"
 Known = Mapping[str, Mapping[str, DetectorRow | DescriptorRow | MatcherRow]]
 """Rows by kind and name."""
 SAYS_KIND = {
     "extract": "extractor",
     "describe": "descriptor",
     "detect": "detector",
+    "match_pair": "pair_matcher",
     "match": "matcher",
 }
 """Kinds of method by the function that a class of that kind has."""
@@ -70,8 +73,9 @@ def register(kind: str, name: str, method: str | type) -> None:
 
     Parameters
     ----------
-    kind : {"detector", "descriptor", "extractor", "matcher"}
-        An extractor is a detector and a descriptor in one.
+    kind : {"detector", "descriptor", "extractor", "matcher", "pair_matcher"}
+        An extractor is a detector and a descriptor in one; a pair matcher matches two images as a
+        whole, and its name alone is a combination.
     name : str
         How combinations name it: letters, digits and underscores, in any case.
     method : str or type
@@ -100,7 +104,7 @@ def register(kind: str, name: str, method: str | type) -> None:
     known: Known = {
         "detector": methods.detectors,
         "descriptor": methods.descriptors,
-        "matcher": methods.every_matcher,
+        "matcher": methods.matchers,
     }
     if reason := _why_unfit(plug_in, known):
         raise SelectionError(f"cannot register the {kind} {name}: {reason}; choose another name")
@@ -155,7 +159,7 @@ def _plug_ins(problems: list[str]) -> Iterator[_PlugIn]:
     installed = list(_installed())
     asked = os.environ.get(CHOICE)
     if asked is not None:
-        names = {name.strip().lower() for name in asked.split(",")} - {"", NONE}
+        names = {name.strip().lower() for name in asked.split(",")} - {"", NO_PLUGINS}
         problems += [
             f"{CHOICE} names {name!r}, which is not an installed plug-in; correct it"
             for name in sorted(names.difference(*map(_called, installed)))
@@ -182,6 +186,7 @@ def _detector(plug_in: _PlugIn, declared: Declaration) -> DetectorRow:
         plug_in.entry.value,
         declared.parameters,
         declared.reference,
+        on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
@@ -196,6 +201,7 @@ def _descriptor(plug_in: _PlugIn, declared: Declaration) -> DescriptorRow:
         declared.reference,
         declared.dtype,
         only_detectors=(plug_in.name,) if plug_in.group == "extractors" else (),
+        on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
@@ -203,14 +209,19 @@ def _descriptor(plug_in: _PlugIn, declared: Declaration) -> DescriptorRow:
 
 
 def _matcher(plug_in: _PlugIn, declared: Declaration) -> MatcherRow:
+    of_pairs = plug_in.group == "pair_matchers"
+    any_type: Mapping[str, tuple[DescriptorType, ...]] = {"L2": ("float32",), "HAM": ("uint8",)}
+    dtypes = OF_PAIRS if of_pairs else declared.dtypes or any_type
     return MatcherRow(
         plug_in.name,
         declared.title or plug_in.name,
         declared.reference,
-        dict.fromkeys(declared.dtypes, declared.parameters),
-        declared.dtypes or {"L2": ("float32",), "HAM": ("uint8",)},
+        dict.fromkeys(dtypes, declared.parameters),
+        dtypes,
         factory=plug_in.entry.value,
         takes_descriptors=declared.takes_descriptors,
+        of_pairs=of_pairs,
+        on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
         unavailable=declared.problem,
@@ -221,6 +232,8 @@ def _why_unfit(plug_in: _PlugIn, known: Known) -> str | None:
     """Why the name of a plug-in cannot stand in a combination, or None if it can."""
     if not METHOD_NAME.fullmatch(plug_in.name):
         return "a name may consist of A-Z, 0-9 and _ only"
+    if plug_in.name == NONE:
+        return f"{NONE} stands for the descriptor of pair matchers"
     for kind in KINDS[plug_in.group]:
         if taken := known[kind].get(plug_in.name):
             return f"{taken.origin} has a {kind} of that name"
@@ -235,15 +248,13 @@ def installed_methods() -> Methods:
     ``AEROCUES_PLUGINS`` leaves out all (``none``), or all but those it names (``name,...``, of
     plug-ins or of packages).
     """
-    base = opencv_methods()
-    detectors, descriptors = dict(base.detectors), dict(base.descriptors)
-    matchers = dict(base.matchers)
+    methods = opencv_methods()
     problems: list[str] = []
     for plug_in in _plug_ins(problems):
         known: Known = {
-            "detector": detectors,
-            "descriptor": descriptors,
-            "matcher": {**matchers, **base.on_request},
+            "detector": methods.detectors,
+            "descriptor": methods.descriptors,
+            "matcher": methods.matchers,
         }
         if reason := _why_unfit(plug_in, known):
             problems.append(
@@ -251,17 +262,21 @@ def installed_methods() -> Methods:
                 f"{reason}; rename its entry point"
             )
             continue
-        declared = _declared(plug_in)
-        if "detector" in KINDS[plug_in.group]:
-            detectors[plug_in.name] = _detector(plug_in, declared)
-        if "descriptor" in KINDS[plug_in.group]:
-            descriptors[plug_in.name] = _descriptor(plug_in, declared)
-        if "matcher" in KINDS[plug_in.group]:
-            matchers[plug_in.name] = _matcher(plug_in, declared)
-    return replace(
-        base,
-        detectors=detectors,
-        descriptors=descriptors,
-        matchers=matchers,
-        problems=tuple(problems),
-    )
+        methods = _with(methods, plug_in)
+    return replace(methods, problems=tuple(problems))
+
+
+def _with(methods: Methods, plug_in: _PlugIn) -> Methods:
+    """The methods and a plug-in."""
+    declared, name, kinds = _declared(plug_in), plug_in.name, KINDS[plug_in.group]
+    if plug_in.group == "pair_matchers":
+        return methods.with_pair_matcher(_matcher(plug_in, declared))
+    detectors, descriptors = dict(methods.detectors), dict(methods.descriptors)
+    matchers = dict(methods.matchers)
+    if "detector" in kinds:
+        detectors[name] = _detector(plug_in, declared)
+    if "descriptor" in kinds:
+        descriptors[name] = _descriptor(plug_in, declared)
+    if "matcher" in kinds:
+        matchers[name] = _matcher(plug_in, declared)
+    return replace(methods, detectors=detectors, descriptors=descriptors, matchers=matchers)

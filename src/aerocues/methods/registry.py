@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Any
 
 from aerocues.errors import SelectionError
-from aerocues.methods.combination import Combination
+from aerocues.methods.combination import NONE, Combination
 from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT, MATCHERS, NORMS, MatcherRow, NormRow
+from aerocues.methods.pair_matchers import NO_DESCRIPTOR, NO_NORM, positions_of
 from aerocues.methods.parameters import OPENCV, why_missing
 from aerocues.methods.presets import Overrides, Preset
 
@@ -22,7 +24,9 @@ class Methods:
 
     ``on_detectors`` has what differs for a descriptor on the keypoints of one detector, by
     "DETECTOR-DESCRIPTOR". ``problems`` tells of plug-ins that are left out, one sentence each.
-    Matchers in ``on_request`` take part only where they are named: nothing else includes them.
+
+    Pair matchers are among the matchers. Among the detectors stands a row for the positions that
+    each of them finds, and among the descriptors and norms the row NONE, which they do without.
     """
 
     detectors: Mapping[str, DetectorRow]
@@ -31,12 +35,49 @@ class Methods:
     matchers: Mapping[str, MatcherRow]
     problems: tuple[str, ...] = ()
     on_detectors: Overrides = field(default_factory=dict)
-    on_request: Mapping[str, MatcherRow] = field(default_factory=dict)
 
     @property
-    def every_matcher(self) -> Mapping[str, MatcherRow]:
-        """The matchers by name, and those on request."""
-        return {**self.matchers, **self.on_request}
+    def pair_matchers(self) -> list[str]:
+        """Names of the pair matchers."""
+        return [name for name, row in self.matchers.items() if row.of_pairs]
+
+    @property
+    def sets(self) -> list[str]:
+        """Names of the sets of methods that take part on request."""
+        tables: tuple[Mapping[str, Any], ...] = (self.detectors, self.descriptors, self.matchers)
+        named = (row.on_request for table in tables for row in table.values())
+        return list(dict.fromkeys(filter(None, named)))
+
+    def rows(self, combination: Combination) -> tuple[DetectorRow, DescriptorRow, MatcherRow]:
+        """The rows of the three methods of a combination."""
+        return (
+            self.detectors[combination.detector],
+            self.descriptors[combination.descriptor],
+            self.matchers[combination.matcher],
+        )
+
+    def with_pair_matcher(self, row: MatcherRow) -> Methods:
+        """The same methods and a pair matcher."""
+        return replace(
+            self,
+            detectors={**self.detectors, row.name: positions_of(row)},
+            descriptors={**self.descriptors, NONE: NO_DESCRIPTOR},
+            norms={**self.norms, NONE: NO_NORM},
+            matchers={**self.matchers, row.name: row},
+        )
+
+    def parse(self, text: str) -> Combination:
+        """Read the text form of a combination, or the name of a pair matcher alone.
+
+        Raises
+        ------
+        SelectionError
+            If it is neither.
+        """
+        name = text.strip().upper()
+        if name in self.pair_matchers:
+            return Combination.of_pair_matcher(name)
+        return Combination.parse(text)
 
     def descriptor_on(self, descriptor: str, detector: str) -> DescriptorRow:
         """The row of a descriptor as it describes the keypoints of a detector."""
@@ -47,11 +88,18 @@ class Methods:
     def combinations(self, *, on_request: bool = False) -> Iterator[Combination]:
         """Every combination that can be written down, runnable or not.
 
-        Those of matchers on request are left out without `on_request`.
+        Those of methods on request are left out without `on_request`.
         """
-        matchers = self.every_matcher if on_request else self.matchers
-        for names in product(self.detectors, self.descriptors, self.norms, matchers):
+
+        def taken(rows: Mapping[str, Any]) -> list[str]:
+            return [name for name, row in rows.items() if on_request or not row.on_request]
+
+        pairs = [name for name in taken(self.matchers) if name in self.pair_matchers]
+        apart = {*self.pair_matchers, NONE}
+        tables = (taken(self.detectors), taken(self.descriptors), self.norms, taken(self.matchers))
+        for names in product(*([name for name in table if name not in apart] for table in tables)):
             yield Combination(*names)
+        yield from map(Combination.of_pair_matcher, pairs)
 
     def require(self, combination: Combination) -> None:
         """Check that the four names exist.
@@ -65,7 +113,7 @@ class Methods:
             ("detector", combination.detector, self.detectors),
             ("descriptor", combination.descriptor, self.descriptors),
             ("norm", combination.norm, self.norms),
-            ("matcher", combination.matcher, self.every_matcher),
+            ("matcher", combination.matcher, self.matchers),
         ):
             if name not in known:
                 raise SelectionError(f"there is no {kind} {name}; known are {', '.join(known)}")
@@ -74,7 +122,7 @@ class Methods:
         """Everything that decides what the methods of `combination` compute."""
         detector = self.detectors[combination.detector]
         descriptor = self.descriptor_on(combination.descriptor, combination.detector)
-        matcher = self.every_matcher[combination.matcher]
+        matcher = self.matchers[combination.matcher]
         return {
             "detector": [detector.origin, detector.factory, dict(detector.parameters)],
             "descriptor": [descriptor.origin, descriptor.factory, dict(descriptor.parameters)],
@@ -108,7 +156,7 @@ class Methods:
 
 
 def opencv_methods() -> Methods:
-    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers; EXACT on request.
+    """OpenCV's 14 detectors, 14 descriptors, 2 norms and 2 matchers; others on request.
 
     What this build of OpenCV lacks, as those without the contributed modules do, is unavailable.
     """
@@ -116,6 +164,8 @@ def opencv_methods() -> Methods:
         {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DETECTORS},
         {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DESCRIPTORS},
         {row.name: row for row in NORMS},
-        {row.name: row for row in MATCHERS},
-        on_request={EXACT.name: replace(EXACT, unavailable=why_not_exact())},
+        {
+            **{row.name: row for row in MATCHERS},
+            EXACT.name: replace(EXACT, unavailable=why_not_exact()),
+        },
     )

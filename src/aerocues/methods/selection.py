@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
@@ -12,6 +13,8 @@ from aerocues.methods.compatibility import why_incompatible, why_meaningless, wh
 from aerocues.methods.registry import Methods
 
 WILDCARDS = frozenset("*?[")
+WITH = "+"
+"""Begins the name of a set of methods on request, such as ``+extra``."""
 
 
 Patterns = str | Combination | Iterable[str | Combination]
@@ -28,13 +31,49 @@ def split_names(names: Patterns | None) -> list[str]:
     return [part.strip().upper() for part in parts if part.strip()]
 
 
-def takes(pattern: str, combination: Combination, methods: Methods) -> bool:
-    """Whether a pattern in upper case takes a combination.
+@dataclass(frozen=True)
+class Asked:
+    """What patterns ask for.
 
-    Wildcards alone do not take those with a matcher on request.
+    Parameters
+    ----------
+    includes, excludes : tuple of str
+        Globs in upper case.
+    sets : frozenset of str
+        Sets of methods on request that wildcards take, too.
     """
-    asked_for = combination.matcher in methods.matchers or combination.matcher in pattern
-    return asked_for and fnmatchcase(str(combination), pattern)
+
+    includes: tuple[str, ...]
+    excludes: tuple[str, ...]
+    sets: frozenset[str]
+
+    @classmethod
+    def of(cls, patterns: Patterns | None, methods: Methods) -> Asked:
+        """Read patterns; SelectionError where a set does not exist."""
+        wanted = split_names(patterns)
+        sets = frozenset(text[1:].lower() for text in wanted if text.startswith(WITH))
+        if unknown := sorted(sets.difference(methods.sets)):
+            known = ", ".join(methods.sets)
+            raise SelectionError(f"there is no set of methods {unknown[0]!r}; known are {known}")
+        includes = tuple(text for text in wanted if text[0] not in f"!{WITH}")
+        excludes = tuple(text[1:] for text in wanted if text.startswith("!"))
+        return cls(includes or ("*",), excludes, sets)
+
+    def takes(self, pattern: str, combination: Combination, methods: Methods) -> bool:
+        """Whether a pattern in upper case takes a combination.
+
+        Wildcards alone do not take those with a method on request. A pair matcher's own name takes
+        its combination.
+        """
+        names = [str(combination), *([combination.matcher] if combination.of_pairs else [])]
+        return any(fnmatchcase(name, pattern) for name in names) and all(
+            not row.on_request or row.on_request in self.sets or row.name in pattern
+            for row in methods.rows(combination)
+        )
+
+    def leaves_out(self, combination: Combination) -> bool:
+        """Whether a combination is excluded."""
+        return any(fnmatchcase(str(combination), pattern) for pattern in self.excludes)
 
 
 def runnable(methods: Methods, *, on_request: bool = False) -> list[Combination]:
@@ -56,9 +95,9 @@ def meaningful(methods: Methods) -> list[Combination]:
     ]
 
 
-def _unmatched(pattern: str, methods: Methods) -> SelectionError:
+def _unmatched(asked: Asked, pattern: str, methods: Methods) -> SelectionError:
     everything = list(methods.combinations(on_request=True))
-    matched = [combination for combination in everything if takes(pattern, combination, methods)]
+    matched = [each for each in everything if asked.takes(pattern, each, methods)]
     if matched:
         first = matched[0]
         reason = (
@@ -69,7 +108,7 @@ def _unmatched(pattern: str, methods: Methods) -> SelectionError:
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
     # A part of a name is no misspelt whole one: it wants its stars.
     for whole in (f"{pattern}-*", f"*-{pattern}-*", f"*-{pattern}"):
-        if any(takes(whole, combination, methods) for combination in everything):
+        if any(asked.takes(whole, each, methods) for each in everything):
             return SelectionError(f"no combination matches {pattern!r}; did you mean '{whole}'?")
     close = get_close_matches(pattern, [str(text) for text in everything], n=3, cutoff=0.6)
     hint = f"did you mean {', '.join(close)}?" if close else "see 'aerocues methods' for the names"
@@ -108,7 +147,7 @@ def select(
     patterns : str, Combination or iterable of both, optional
         Globs over the text form, separated by commas, in any case; a leading ``!`` takes out. A
         full name without wildcards is taken even where it is runnable but not meaningful. A
-        matcher on request must be named.
+        method on request must be named, or the set in which it is offered, as in ``*,+extra``.
     detectors, descriptors : str or iterable of str, optional
         Names or globs of the detectors and descriptors to keep.
     everything : bool
@@ -126,22 +165,15 @@ def select(
     """
     can_run = runnable(methods, on_request=True)
     usual = [each for each in can_run if everything or why_meaningless(each, methods) is None]
-    wanted = split_names(patterns)
-    includes = [pattern for pattern in wanted if not pattern.startswith("!")]
-    excludes = [pattern[1:] for pattern in wanted if pattern.startswith("!")]
+    asked = Asked.of(patterns, methods)
     chosen: set[Combination] = set()
-    for pattern in includes or ["*"]:
+    for pattern in asked.includes:
         pool = usual if WILDCARDS & set(pattern) else can_run
-        found = {candidate for candidate in pool if takes(pattern, candidate, methods)}
+        found = {candidate for candidate in pool if asked.takes(pattern, candidate, methods)}
         if not found:
-            raise _unmatched(pattern, methods)
+            raise _unmatched(asked, pattern, methods)
         chosen |= found
-    kept = [
-        candidate
-        for candidate in can_run
-        if candidate in chosen
-        and not any(fnmatchcase(str(candidate), pattern) for pattern in excludes)
-    ]
+    kept = [each for each in can_run if each in chosen and not asked.leaves_out(each)]
     kept = _by_component(kept, "detector", split_names(detectors))
     kept = _by_component(kept, "descriptor", split_names(descriptors))
     if not kept:

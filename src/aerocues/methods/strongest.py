@@ -60,10 +60,14 @@ class KeypointLimit:
 
     def keep(self, keypoints: Keypoints, seed: int) -> Keypoints:
         """The keypoints that are kept, in the order in which they came."""
+        return keypoints.take(self.kept(keypoints, seed))
+
+    def kept(self, keypoints: Keypoints, seed: int) -> NDArray[np.intp]:
+        """Indices of the keypoints that are kept, in the order in which they came."""
         if not self.count or len(keypoints) <= self.count:
-            return keypoints
+            return np.arange(len(keypoints))
         choose = _spread if self.spread else _strongest
-        return keypoints.take(np.sort(choose(keypoints, self.count, seed)))
+        return np.sort(choose(keypoints, self.count, seed))
 
 
 ALL_KEYPOINTS = KeypointLimit()

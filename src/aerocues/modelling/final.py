@@ -10,7 +10,7 @@ from aerocues.datasets.dataset import Dataset, Pair
 from aerocues.errors import FocalLengthError
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
-from aerocues.methods.matchers import EXACT
+from aerocues.methods.matchers import EXACT, MATCHERS
 from aerocues.phrases import likelihood
 from aerocues.pipeline.block import MOST_IMAGES, connected_block
 from aerocues.pipeline.survey import Survey
@@ -29,6 +29,8 @@ SHARE = 1 / 3
 LEAST_SECONDS = 20.0
 """Less does not build a model of a few images with a few combinations."""
 FEWEST_IMAGES = 3
+NEAREST = frozenset(row.name for row in MATCHERS)
+"""Matchers of nearest neighbours."""
 
 
 def has_final(dataset: Dataset, budget: float) -> bool:
@@ -115,8 +117,11 @@ def _with_leader(
 
 
 def exactly_matched(combination: Combination) -> Combination:
-    """The same with the exact matcher: the matches of brute force in a fifth of its time."""
-    if why_not_exact():
+    """The same with the exact matcher: the matches of brute force in a fifth of its time.
+
+    Matchers that find other matches stay, but FLANN, which finds nearly the same.
+    """
+    if why_not_exact() or combination.matcher not in NEAREST:
         return combination
     return replace(combination, matcher=EXACT.name)
 

@@ -66,6 +66,10 @@ class StageTime:
         return ratio is not None and ratio > DISTURBED
 
 
+NO_TIME = StageTime(0.0, 0.0)
+"""Of a stage that a combination does without."""
+
+
 class Clock:
     """Times calls in the calling thread, OpenCV's random numbers seeded before each.
 

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 
 from aerocues.datasets.dataset import Image
-from aerocues.methods.arrays import Features
+from aerocues.methods.arrays import Features, Keypoints
 from aerocues.methods.combination import Combination
 from aerocues.methods.making import DescriptorStage, DetectorStage, make_descriptor, make_detector
 from aerocues.methods.registry import Methods
-from aerocues.pipeline.clock import Clock
+from aerocues.pipeline.clock import NO_TIME, Clock
 from aerocues.pipeline.feature_cache import FeatureCache, Key
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.features import (
@@ -160,6 +160,8 @@ class FeatureSource:
         return TimedFeatures(described.features, detected[1].cpu + described.time.cpu)
 
     def _detect(self, image: Image, name: str) -> ImageFeatures:
+        if self._methods.detectors[name].of_pairs:
+            return self._extractor.read(image, Keypoints.from_xy(np.empty((0, 2))), NO_TIME)
         kept = self._folder.keypoints(image, name) if self._folder else None
         if kept is not None:
             return self._extractor.read(image, *kept)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Image, Pixels
 from aerocues.errors import ImageError, MethodUnavailableError
-from aerocues.methods.arrays import Features, Keypoints
+from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.making import DescriptorStage, DetectorStage
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.pipeline.clock import Clock, StageTime
@@ -137,10 +137,15 @@ def on_valid_pixels(keypoints: Keypoints, valid: NDArray[np.bool_] | None) -> Ke
     """Drop keypoints on the border that a warp leaves: they are corners of no object."""
     if valid is None or not len(keypoints):
         return keypoints
+    return keypoints.take(are_valid(keypoints.xy, valid))
+
+
+def are_valid(xy: Float32Array, valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether (N, 2) positions lie on valid pixels."""
     height, width = valid.shape
-    columns = np.clip(np.floor(keypoints.xy[:, 0] + 0.5).astype(np.int64), 0, width - 1)
-    rows = np.clip(np.floor(keypoints.xy[:, 1] + 0.5).astype(np.int64), 0, height - 1)
-    return keypoints.take(valid[rows, columns])
+    columns = np.clip(np.floor(xy[:, 0] + 0.5).astype(np.int64), 0, width - 1)
+    rows = np.clip(np.floor(xy[:, 1] + 0.5).astype(np.int64), 0, height - 1)
+    return np.asarray(valid[rows, columns])
 
 
 class FeatureExtractor:
@@ -158,7 +163,7 @@ class FeatureExtractor:
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
             self._warm.add(("detector", name))
-            warm_up(lambda: detector.call(_centre(pixels.bgr)))
+            warm_up(lambda: detector.call(centre(pixels.bgr)))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
         kept = self._limit.keep(on_valid_pixels(found, pixels.valid), self._seed)
@@ -190,7 +195,8 @@ class FeatureExtractor:
         return Described(replace(found, image_size=image.size), time)
 
 
-def _centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The middle of an image, for what is called to warm up."""
     top = max((bgr.shape[0] - WARM_UP_SIZE) // 2, 0)
     left = max((bgr.shape[1] - WARM_UP_SIZE) // 2, 0)
     return np.ascontiguousarray(bgr[top : top + WARM_UP_SIZE, left : left + WARM_UP_SIZE])

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Geometry
 from aerocues.methods.arrays import Features, Float32Array, Matches
 from aerocues.methods.combination import Combination
-from aerocues.methods.making import MatcherStage, make_matcher
+from aerocues.methods.making import MatcherStage, make_matcher, make_pair_matcher
+from aerocues.methods.pair_matching import ArrayPairMatcher
 from aerocues.methods.registry import Methods
 from aerocues.pipeline.brute_force_time import SampledBruteForce
 from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.feature_source import Announce, silent
-from aerocues.pipeline.features import run_stage, warm_up
+from aerocues.pipeline.features import ImageFeatures, centre, run_stage, warm_up
 from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import IndexArray, Verdict, Verifier
+from aerocues.pipeline.whole_images import MatchedPair, matched_pair
 from aerocues.processes.call import NO_PAIR, StageCall
 
 BRUTE_FORCE = "BF"
@@ -49,6 +52,7 @@ class PairStages:
         self._clock = clock
         self._announce = announce
         self._matchers: dict[tuple[str, str], MatcherStage] = {}
+        self._pair_matchers: dict[str, ArrayPairMatcher] = {}
         self._verifiers: dict[float, Verifier] = {}
 
     def match(
@@ -83,6 +87,37 @@ class PairStages:
             return run_stage(what, lambda: sampled.match(*features))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(*features)))
         return run_stage(what, lambda: matcher.read(raw)), time
+
+    def match_images(
+        self,
+        combination: Combination,
+        images: tuple[ImageFeatures, ImageFeatures],
+        names: str,
+        pair: int = NO_PAIR,
+    ) -> tuple[MatchedPair, StageTime]:
+        """What a pair matcher finds in two images, and the time of the call.
+
+        Parameters
+        ----------
+        combination : Combination
+            Of a pair matcher.
+        images : tuple of ImageFeatures
+            The first and the second image, of which only the pixels count.
+        names, pair
+            As `images` and `pair` in `match`.
+
+        Raises
+        ------
+        StageError
+            If the pair matcher fails.
+        """
+        self._announce(stage_call("match", combination, names, pair))
+        what = f"{combination.matcher} matching {names}"
+        first, second = (image.pixels.bgr for image in images)
+        matcher = self._pair_matcher(combination.matcher, (first, second), what)
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
+        found = run_stage(what, lambda: matcher.read(raw))
+        return matched_pair(found, images, self._protocol.limit, self._protocol.seed), time
 
     def verify(
         self,
@@ -123,6 +158,16 @@ class PairStages:
             own = self._protocol.with_threshold(threshold)
             self._verifiers[threshold] = Verifier(own, self._geometry, self._clock)
         return self._verifiers[threshold]
+
+    def _pair_matcher(
+        self, name: str, images: tuple[NDArray[np.uint8], NDArray[np.uint8]], what: str
+    ) -> ArrayPairMatcher:
+        if name not in self._pair_matchers:
+            made = run_stage(what, lambda: make_pair_matcher(self._methods, name))
+            few = [centre(image) for image in images]
+            warm_up(lambda: made.call(*few))
+            self._pair_matchers[name] = made
+        return self._pair_matchers[name]
 
     def _matcher(
         self, combination: Combination, features: tuple[Features, Features], what: str

@@ -23,12 +23,15 @@ from aerocues.methods.selection import select_one
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
-from aerocues.pipeline.features import StageError
+from aerocues.pipeline.features import StageError, unless_failed
 from aerocues.pipeline.pair_stages import PairStages, matched_points
 from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import Verdict
+from aerocues.pipeline.whole_images import MatchedPair
 
 Result = TypeVar("Result")
+ImageLike = str | Path | NDArray[np.uint8] | Image
+"""An image file, a (H, W, 3) BGR or (H, W) gray uint8 array, or an image of a dataset."""
 
 
 class Pipeline:
@@ -78,7 +81,7 @@ class Pipeline:
         self._source = FeatureSource(methods, protocol, clock)
         self._stages = PairStages(methods, protocol, geometry, clock)
 
-    def features(self, image: str | Path | NDArray[np.uint8] | Image) -> Features:
+    def features(self, image: ImageLike) -> Features:
         """The keypoints that the descriptor describes, and their descriptors.
 
         Parameters
@@ -99,8 +102,37 @@ class Pipeline:
         MethodFailedError
             If the detector or the descriptor fails on it.
         """
+        if self.combination.of_pairs:
+            raise MethodFailedError(
+                f"{self.combination.matcher} is a pair matcher, which finds nothing in a single "
+                "image; give both to `match_images`"
+            )
         [in_memory] = decoded(image)
         return self._run(lambda: self._features(in_memory))
+
+    def match_images(
+        self, image_1: ImageLike, image_2: ImageLike
+    ) -> tuple[Features, Features, Matches]:
+        """Features and matches of two images, whatever the combination, pair matchers included.
+
+        Returns
+        -------
+        tuple of Features, Features and Matches
+            Those of a pair matcher have no descriptors, and match one to one in their order.
+
+        Raises
+        ------
+        ImageError
+            If an image cannot be read, or an array is none of an image.
+        MethodFailedError
+            If a method fails on them.
+        """
+        first, second = decoded(image_1, image_2)
+        if self.combination.of_pairs:
+            found = self._run(lambda: self._match_pair(first, second))
+            return *found.features, found.matches
+        features = self.features(first), self.features(second)
+        return *features, self.match(*features)
 
     def match(self, first: Features, second: Features) -> Matches:
         """Mutual matches of two images.
@@ -148,6 +180,12 @@ class Pipeline:
         finally:
             self._source.forget()
 
+    def _match_pair(self, first: Image, second: Image) -> MatchedPair:
+        seen = [self._source.detected(each, self.combination.detector) for each in (first, second)]
+        self._source.forget()
+        one, other = map(unless_failed, seen)
+        return self._stages.match_images(self.combination, (one, other), "two images")[0]
+
     def _run(self, call: Callable[[], Result]) -> Result:
         try:
             return call()
@@ -155,7 +193,7 @@ class Pipeline:
             raise MethodFailedError(error.message or error.status) from error
 
 
-def decoded(*images: str | Path | NDArray[np.uint8] | Image) -> list[Image]:
+def decoded(*images: ImageLike) -> list[Image]:
     """Images in memory, files read alike: what is wrong with a file is told as such."""
     paths = [Path(image) for image in images if isinstance(image, str | Path)]
     sources = iter(sources_alike(paths))

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from aerocues.datasets.dataset import Geometry, Image
+from aerocues.datasets.dataset import Geometry
 from aerocues.methods.arrays import Features, Float32Array, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset
-from aerocues.pipeline.pipeline import Pipeline, decoded
-
-ImageLike = str | Path | NDArray[np.uint8] | Image
-"""An image file, a (H, W, 3) BGR or (H, W) gray uint8 array, or an image of a dataset."""
-
+from aerocues.pipeline.pipeline import ImageLike, Pipeline, decoded
 
 INLIER = (233, 180, 86)
 """Sky blue of Okabe and Ito; blue, green, red."""
@@ -194,8 +189,7 @@ def match(
         combination, preset, max_keypoints=max_keypoints, seed=seed, geometry=geometry
     )
     images = decoded(image_1, image_2)
-    first, second = (pipeline.features(image) for image in images)
-    matches = pipeline.match(first, second)
+    first, second, matches = pipeline.match_images(*images)
     verdict = pipeline.verify(first, second, matches)
     found: FoundGeometry = (
         "homography" if verdict.sampling == "homography" else "fundamental matrix"

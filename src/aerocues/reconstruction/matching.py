@@ -13,11 +13,12 @@ from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import Announce, FeatureSource, TimedFeatures
-from aerocues.pipeline.features import StageError
+from aerocues.pipeline.features import ImageFeatures, StageError, unless_failed
 from aerocues.pipeline.pair_stages import PairStages
 from aerocues.processes.call import StageCall
 from aerocues.reconstruction.feature_size import at_full_size, smaller
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
+from aerocues.reconstruction.merging import merged
 from aerocues.reconstruction.scene import Scene
 
 HELD_IN_MEMORY = 64
@@ -66,6 +67,8 @@ class SceneMatcher:
 
     def match(self) -> MatchedScene:
         """Features and matches; StageError where a method fails."""
+        if self._combination.of_pairs:
+            return self._match_images()
         keypoints = {}
         seconds = 0.0
         images = self._scene.dataset.images
@@ -83,6 +86,31 @@ class SceneMatcher:
                 )
         pairs, matching_seconds = self._match_pairs()
         return MatchedScene(keypoints, pairs, seconds, matching_seconds)
+
+    def _match_images(self) -> MatchedScene:
+        """What a pair matcher finds; positions of several pairs become keypoints of images."""
+        found = {}
+        seconds = 0.0
+        width, chosen = self._scene.protocol.features_width, self._scene.dataset.pairs
+        for number, pair in enumerate(chosen, start=1):
+            self._place = number, len(chosen)
+            one, other = (self._image(name) for name in (pair.image_1, pair.image_2))
+            images = f"{pair.image_1} and {pair.image_2}"
+            matched, time = self._stages.match_images(self._combination, (one, other), images)
+            found[pair.image_1, pair.image_2] = matched
+            seconds += time.cpu
+            self._features.trim()
+        images_by_name = {image.name: image for image in self._scene.dataset.images}
+        keypoints, pairs = merged(images_by_name, found)
+        full = {
+            name: at_full_size(each, images_by_name[name], width)
+            for name, each in keypoints.items()
+        }
+        return MatchedScene(full, pairs, 0.0, seconds)
+
+    def _image(self, name: str) -> ImageFeatures:
+        image = smaller(self._scene.dataset.image(name), self._scene.protocol.features_width)
+        return unless_failed(self._features.detected(image, self._combination.detector))
 
     def _timed_features(self, name: str) -> TimedFeatures:
         image = smaller(self._scene.dataset.image(name), self._scene.protocol.features_width)

@@ -89,7 +89,7 @@ def identity_of(scene: Scene, combination: Combination) -> Row:
     }
     if combination == BASELINE:
         return {**facts, **baseline_facts(scene)}
-    parameters = json.dumps(scene.methods.parameters(combination), sort_keys=True)
+    parameters = json.dumps(scene.parameters(combination), sort_keys=True)
     return {**facts, "parameters": parameters}
 
 

@@ -11,6 +11,7 @@ from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.protocol import MeasurementProtocol
+from aerocues.reconstruction.merging import CELL
 from aerocues.reconstruction.protocol import ReconstructionProtocol
 from aerocues.results.hashing import content_hash
 
@@ -119,11 +120,16 @@ class Scene:
             [
                 self._pairs(),
                 [[image.name, self.image_keys[image.name]] for image in self.dataset.images],
-                self.methods.parameters(combination),
+                self.parameters(combination),
                 self.protocol.matching_identity(),
                 self.versions[0],
             ]
         )
+
+    def parameters(self, combination: Combination) -> dict[str, object]:
+        """Everything that decides what the methods of a combination compute in a scene."""
+        parameters = self.methods.parameters(combination)
+        return {**parameters, "merged_within": CELL} if combination.of_pairs else parameters
 
     def settings_key(self) -> str:
         """Key of the settings that all combinations share."""

@@ -13,7 +13,7 @@ from aerocues.methods.arrays import Features
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_source import FeatureSource
-from aerocues.pipeline.features import StageError, unless_failed
+from aerocues.pipeline.features import ImageFeatures, StageError, unless_failed
 from aerocues.pipeline.pair_stages import PairStages, matched_points
 from aerocues.report.right_matches import RightMatches
 
@@ -89,16 +89,16 @@ class Drawer:
             self._features.trim()
             self._pair = pair
         try:
-            first = self._describe(combination, pair.image_1)
-            second = self._describe(combination, pair.image_2)
-            return self._match(pair, combination, first, second)
+            return self._match(pair, combination)
         except StageError as failure:
             return failure.message or f"{failure.status.replace('_', ' ')} on this pair"
 
-    def _describe(self, combination: Combination, name: str) -> Features:
-        found = unless_failed(
+    def _detect(self, combination: Combination, name: str) -> ImageFeatures:
+        return unless_failed(
             self._features.detected(self._dataset.image(name), combination.detector)
         )
+
+    def _describe(self, combination: Combination, found: ImageFeatures) -> Features:
         if not len(found.keypoints):
             raise StageError("no_keypoints", None)
         features = self._features.described(found, combination).features
@@ -106,11 +106,15 @@ class Drawer:
             raise StageError("no_descriptors", None)
         return features
 
-    def _match(
-        self, pair: Pair, combination: Combination, first: Features, second: Features
-    ) -> DrawnMatches:
+    def _match(self, pair: Pair, combination: Combination) -> DrawnMatches:
         images = "this pair"
-        matches, _ = self._stages.match(combination, (first, second), images)
+        seen = (self._detect(combination, pair.image_1), self._detect(combination, pair.image_2))
+        if combination.of_pairs:
+            whole, _ = self._stages.match_images(combination, seen, images)
+            (first, second), matches = whole.features, whole.matches
+        else:
+            first, second = (self._describe(combination, image) for image in seen)
+            matches, _ = self._stages.match(combination, (first, second), images)
         points, order = matched_points(first, second, matches)
         verdict = self._stages.verify(combination, points, order, images)
         right, judge = self._judge.judged(pair, *points)

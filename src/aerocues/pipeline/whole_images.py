@@ -1,0 +1,63 @@
+"""What a pair matcher finds in two images, in the form that other combinations give it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from aerocues.methods.arrays import Features, Float32Array, Keypoints, Matches
+from aerocues.methods.pair_matching import PointMatches
+from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.features import ImageFeatures, are_valid
+
+
+@dataclass(frozen=True, eq=False)
+class MatchedPair:
+    """Two images that were matched as a whole.
+
+    Parameters
+    ----------
+    features : tuple of Features
+        N positions in each image, without descriptors.
+    matches : Matches
+        Of each position with the one of the same index; the distance is minus the score.
+    """
+
+    features: tuple[Features, Features]
+    matches: Matches
+
+
+def matched_pair(
+    found: PointMatches,
+    images: tuple[ImageFeatures, ImageFeatures],
+    limit: KeypointLimit,
+    seed: int,
+) -> MatchedPair:
+    """The positions that count: on valid pixels, and the surest ones up to a limit.
+
+    Parameters
+    ----------
+    found : PointMatches
+    images : tuple of ImageFeatures
+        The first and the second image.
+    limit : KeypointLimit
+        Of keypoints; the score of a match takes the place of their strength.
+    seed : int
+        Decides among equal scores.
+    """
+    for image in images:
+        points = found.points_1 if image is images[0] else found.points_2
+        if image.pixels.valid is not None:
+            found = found.take(are_valid(points, image.pixels.valid))
+    found = found.take(limit.kept(_keypoints(found.points_1, found), seed))
+    first, second = (
+        Features(_keypoints(points, found), np.empty((len(found), 0), np.float32), image.size)
+        for points, image in zip((found.points_1, found.points_2), images, strict=True)
+    )
+    indices = np.repeat(np.arange(len(found), dtype=np.int32)[:, None], 2, axis=1)
+    return MatchedPair((first, second), Matches(indices, -found.scores))
+
+
+def _keypoints(points: Float32Array, found: PointMatches) -> Keypoints:
+    return replace(Keypoints.from_xy(points), response=found.scores)
