@@ -1,8 +1,9 @@
 """A hook of the site: pages as Markdown of the site needs them.
 
 Links to files outside of the guide become their paths: in the repository they lead somewhere; the
-site holds the guide and the notebooks alone. Marks of generated tables go, for a table that follows a comment without
-a blank line would stay text; so does what only the tests read: that the output of a block is exact.
+site holds the guide and the notebooks alone. Marks of generated tables go, for a table that follows
+a comment without a blank line would stay text; so does what only the tests read: that the output of
+a block is exact.
 """
 
 from __future__ import annotations
