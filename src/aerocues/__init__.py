@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from aerocues.scoring.ranking import Ranking
     from aerocues.scoring.validation import Validation
     from aerocues.simulation.simulate import simulate
+    from aerocues.tuning.choice import Choice, choose
     from aerocues.tuning.recommendation import Recommendation
     from aerocues.tuning.tune import Tuned, tune
 
@@ -66,6 +67,8 @@ _MODULES = {
     "Ranking": "scoring.ranking",
     "validate": "scoring.assessment",
     "Validation": "scoring.validation",
+    "choose": "tuning.choice",
+    "Choice": "tuning.choice",
     "compare": "scoring.assessment",
     "ComparedResults": "scoring.compared",
     "relate_outcomes": "scoring.outcomes",
@@ -91,6 +94,7 @@ _MODULES = {
 
 __all__ = [
     "AerocuesError",
+    "Choice",
     "Combination",
     "ComparedResults",
     "DaskEngine",
@@ -110,6 +114,7 @@ __all__ = [
     "Used",
     "Validation",
     "__version__",
+    "choose",
     "compare",
     "features",
     "figure",

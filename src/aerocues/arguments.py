@@ -9,7 +9,8 @@ from numbers import Integral, Real
 
 from aerocues.errors import ArgumentError
 
-SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
+SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "sec": 1.0, "min": 60.0, "m": 60.0, "h": 3600.0}
+MEGABYTES = {"": 1.0, "mb": 1.0, "gb": 1000.0}
 
 
 def check_choice(parameter: str, value: object, choices: Iterable[str]) -> None:
@@ -57,6 +58,27 @@ def seconds_of(parameter: str, value: str | float) -> float:
             f"`{parameter}` must be a time above 0, such as 90s, 5min or 1h, got {value!r}"
         )
     return seconds
+
+
+def megabytes_of(parameter: str, value: str | float) -> float:
+    """Megabytes above 0, from a number of them or a text such as ``300MB`` or ``1.5 GB``.
+
+    Raises
+    ------
+    ArgumentError
+        If it is neither.
+    """
+    if isinstance(value, str):
+        match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([a-z]*)\s*", value.lower())
+        known = match is not None and match[2] in MEGABYTES
+        megabytes = float(match[1]) * MEGABYTES[match[2]] if match and known else 0.0
+    else:
+        megabytes = _number(value)
+    if not 0 < megabytes < math.inf:
+        raise ArgumentError(
+            f"`{parameter}` must be a size above 0, such as 300MB or 1.5GB, got {value!r}"
+        )
+    return megabytes
 
 
 def _number(value: object) -> float:

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import shlex
 import time
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.limit_options import (
+    LicenceOption,
+    Limits,
+    MaxBytesOption,
+    MaxMemoryOption,
+    MaxSecondsOption,
+    Objective,
+)
 from aerocues.cli.options import (
     BandOption,
     CombinationsOption,
-    DatasetArgument,
     EqualizeOption,
     EveryOption,
+    JsonOption,
     MaxKeypointsOption,
     MaxWidthOption,
     MethodPresetOption,
@@ -36,19 +43,23 @@ if TYPE_CHECKING:
     from aerocues.tuning.recommendation import Recommendation
 
 
-class Objective(StrEnum):
-    """Values of ``--objective``."""
-
-    BALANCED = "balanced"
-    EFFICIENCY = "efficiency"
-    SPEED = "speed"
-    ACCURACY = "accuracy"
-    RECONSTRUCTION = "reconstruction"
-    ROBUST = "robust"
-
-
 def recommend(
-    dataset: DatasetArgument,
+    dataset: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="DATASET",
+            help="A folder of images, or one of the kinds that 'aerocues datasets' lists.",
+            show_default=False,
+        ),
+    ] = None,
+    results: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--from",
+            metavar="RESULTS",
+            help="Choose from finished results in place of measuring; may be repeated.",
+        ),
+    ] = None,
     budget: Annotated[
         str, typer.Option(metavar="TIME", help="Total time, such as 90s, 5min or 1h.")
     ] = f"{RACE_SECONDS / 60:g}min",
@@ -107,14 +118,29 @@ def recommend(
     seed: SeedOption = 0,
     plugin: PluginOption = None,
     no_plugins: NoPluginsOption = False,
+    max_seconds_per_image: MaxSecondsOption = None,
+    max_memory: MaxMemoryOption = None,
+    max_descriptor_bytes: MaxBytesOption = None,
+    licence: LicenceOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Recommend a combination for images, in minutes.
 
     Combinations race on representative pairs: the cheap ones first, then those that can still
     win. A third of the time is kept for models of the leaders, beside COLMAP's default: the best
     model decides. After an interruption run the same command again: it continues.
+
+    With --from finished results, of one or several datasets, are scored at once, within limits of
+    time, memory, size and licence.
     """
     began = time.monotonic()
+    limits = Limits(max_seconds_per_image, max_memory, max_descriptor_bytes, licence)
+    if results:
+        _from_results(results, dataset, objective, combinations, limits, top, seed, as_json=as_json)
+        return
+    if dataset is None:
+        raise typer.BadParameter("give DATASET to measure its images, or --from with results")
+    _check_race(limits, as_json=as_json)
     import aerocues
     from aerocues.cli.console import tell_images
     from aerocues.cli.interruption import interruptible
@@ -157,6 +183,43 @@ def recommend(
         _print_next(found, same)
         if report is not None:
             _write_report(found, report)
+
+
+def _from_results(
+    results: list[Path],
+    dataset: str | None,
+    objective: Objective,
+    combinations: str | None,
+    limits: Limits,
+    top: int,
+    seed: int,
+    *,
+    as_json: bool,
+) -> None:
+    import aerocues
+    from aerocues.cli.choice_table import choice_facts, print_choice
+    from aerocues.cli.interruption import interruptible
+    from aerocues.cli.output import print_json
+
+    if dataset is not None:
+        raise typer.BadParameter(f"{dataset} is not measured with --from; give one of the two")
+    with interruptible():
+        found = aerocues.choose(
+            results, objective.value, combinations=combinations, seed=seed, **limits.given()
+        )
+    if as_json:
+        print_json(choice_facts(found))
+    else:
+        print_choice(found, top)
+
+
+def _check_race(limits: Limits, *, as_json: bool) -> None:
+    """Raise a usage error where an option belongs to finished results only."""
+    for name in limits.given():
+        option = f"--{name.replace('_', '-')}"
+        raise typer.BadParameter(f"{option} chooses among finished results; give --from, too")
+    if as_json:
+        raise typer.BadParameter("--json is for finished results; give --from, too")
 
 
 def _print(found: Recommendation, top: int, *, explain: bool) -> None:

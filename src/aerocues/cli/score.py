@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.limit_options import (
+    LicenceOption,
+    Limits,
+    MaxBytesOption,
+    MaxMemoryOption,
+    MaxSecondsOption,
+    Objective,
+)
 from aerocues.cli.options import JsonOption, ResultsArgument, TopOption
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
@@ -39,6 +49,10 @@ class Interval(StrEnum):
 
 def score(
     folder: ResultsArgument,
+    objective: Annotated[
+        Objective | None,
+        typer.Option(help="Rank for a purpose, as 'aerocues recommend' does, in place of CUES."),
+    ] = None,
     preset: PresetOption = None,
     criteria: CriteriaOption = None,
     failures: FailuresOption = None,
@@ -76,8 +90,19 @@ def score(
     markdown: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the best N as a Markdown table.")
     ] = None,
+    max_seconds_per_image: MaxSecondsOption = None,
+    max_memory: MaxMemoryOption = None,
+    max_descriptor_bytes: MaxBytesOption = None,
+    licence: LicenceOption = None,
 ) -> None:
-    """Rank combinations by CUES, with uncertainty intervals."""
+    """Rank combinations by CUES, with uncertainty intervals; or for a purpose and within limits."""
+    targets = {"csv": csv, "latex": latex, "markdown": markdown}
+    limits = Limits(max_seconds_per_image, max_memory, max_descriptor_bytes, licence)
+    if objective is not None or limits.given():
+        _refuse_settings(preset, criteria, failures, alpha, weights, aggregation, reconstruction)
+        drawn = {"dataset": dataset, "resamples": resamples, "seed": seed}
+        _for_purpose(folder, objective, {**limits.given(), **drawn}, targets, top, as_json=as_json)
+        return
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.ranking_table import facts, print_scores
@@ -105,7 +130,6 @@ def score(
             test=test.value,
             top_k=top_k,
         )
-    targets = {"csv": csv, "latex": latex, "markdown": markdown}
     _write(ranking, targets, top)
     if STANDARD_OUTPUT in targets.values():
         return
@@ -113,6 +137,41 @@ def score(
         print_json(facts(ranking, measured))
     else:
         print_scores(ranking, measured, top)
+
+
+def _refuse_settings(*settings: object) -> None:
+    if any(setting is not None for setting in settings):
+        raise typer.BadParameter(
+            "an objective and limits have their own criteria and weights; leave out --preset, "
+            "--criteria, --failures, --alpha, --weights, --aggregation and --reconstruction"
+        )
+
+
+def _for_purpose(
+    folder: Path,
+    objective: Objective | None,
+    settings: Mapping[str, Any],
+    targets: Mapping[str, str | None],
+    top: int,
+    *,
+    as_json: bool,
+) -> None:
+    import aerocues
+    from aerocues.cli.choice_table import choice_facts, print_choice
+    from aerocues.cli.interruption import interruptible
+
+    with interruptible():
+        found = aerocues.choose(folder, (objective or Objective.EFFICIENCY).value, **settings)
+    for form, target in targets.items():
+        if target is not None:
+            frame = found.ranked if form == "csv" else found.ranked.head(top)
+            write_table(frame, target, form, "combination")
+    if STANDARD_OUTPUT in targets.values():
+        return
+    if as_json:
+        print_json(choice_facts(found))
+    else:
+        print_choice(found, top)
 
 
 def _write(ranking: Ranking, targets: dict[str, str | None], top: int) -> None:

@@ -34,9 +34,11 @@ class Objective:
         to the estimated weights. Empty: all weights as estimated.
     time_power : float
         The score is multiplied by (least seconds / seconds) to this power.
-    worst : float
+    share : float
         Share of the blocks (scenes or sequences; pairs if there is one block) over which the score
         is averaged: those with an alternative's lowest scores. 1: all pairs.
+    highest : bool
+        Whether it is averaged over the blocks with the highest scores.
     """
 
     name: str
@@ -45,7 +47,8 @@ class Objective:
     preset: str = "default"
     shares: Mapping[Aspect, float] = field(default_factory=dict)
     time_power: float = 0.0
-    worst: float = 1.0
+    share: float = 1.0
+    highest: bool = False
 
     def scoring(self, *, references: bool, chance_test: bool = True) -> ScorePreset:
         """The preset that measurements are scored by.
@@ -94,8 +97,10 @@ class Objective:
 
     def over_blocks(self, scores: Array) -> Array:
         """(A,) scores from the scores (A, B) in each block."""
-        count = max(math.ceil(self.worst * scores.shape[1]), 1)
-        return np.asarray(np.sort(scores, axis=1)[:, :count].mean(axis=1))
+        count = max(math.ceil(self.share * scores.shape[1]), 1)
+        ordered = np.sort(scores, axis=1)
+        chosen = ordered[:, -count:] if self.highest else ordered[:, :count]
+        return np.asarray(chosen.mean(axis=1))
 
 
 OBJECTIVES: dict[str, Objective] = {
@@ -143,7 +148,15 @@ OBJECTIVES: dict[str, Objective] = {
             "unknown conditions",
             "CUES on a combination's worst quarter of the scenes (of the pairs, if there is one "
             "scene; in the thesis: unknown conditions)",
-            worst=0.25,
+            share=0.25,
+        ),
+        Objective(
+            "controlled",
+            "controlled conditions",
+            "CUES on a combination's best quarter of the scenes (of the pairs, if there is one "
+            "scene; in the thesis: controlled conditions)",
+            share=0.25,
+            highest=True,
         ),
     )
 }

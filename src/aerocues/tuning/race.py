@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from aerocues.errors import ScoreError
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings
+from aerocues.scoring.valuation import Valuation, chances, interest_of
 from aerocues.tuning.criteria_evaluator import Cell, CriteriaEvaluator
 from aerocues.tuning.layout import KIND, features, spread_order
 from aerocues.tuning.scales import Array, Mask, Scales
 from aerocues.tuning.surrogate import Surrogate, fit
-from aerocues.tuning.valuation import Valuation, chances, interest_of
 
 Ended = Literal["budget", "sure", "measured"]
 # Users see the best five: what is likely to be among them is worth measuring, too.

@@ -11,8 +11,8 @@ from aerocues.errors import ScoreError
 from aerocues.scoring.criteria import Criterion, criteria_named
 from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings, score_preset_named
+from aerocues.scoring.valuation import Valuation
 from aerocues.tuning.scales import Array
-from aerocues.tuning.valuation import Valuation
 
 CUES = "cues"
 FEWEST_SCENES = 3

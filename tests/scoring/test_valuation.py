@@ -8,7 +8,7 @@ from aerocues.scoring.cues import score
 from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.scoring.settings import SCORE_PRESETS, ScoreSettings
 from aerocues.scoring.table import DecisionTable
-from aerocues.tuning.valuation import Valuation
+from aerocues.scoring.valuation import Valuation
 
 CRITERIA = (
     Criterion("precision", aspect="accuracy"),

@@ -17,7 +17,8 @@ from aerocues.scoring.links import Links
 from aerocues.scoring.objectives import TIME, Objective
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.weights import weights_by_method
-from aerocues.tuning.scales import Array
+
+Array = NDArray[np.float64]
 
 
 class Valuation:
@@ -84,17 +85,22 @@ class Valuation:
         powered: Array = np.clip(upright, 0.0, 1.0) ** self._alpha
         return powered
 
-    def of(self, values: Array) -> Array:
-        """(A,) scores of (A, P, C) values."""
-        mean = values.mean(axis=1)
-        if self._objective.worst < 1.0:
-            by_block = np.einsum("apc,bp->abc", values, self._member)
+    def of(self, values: Array, counts: Array | None = None) -> Array:
+        """(A,) scores of (A, P, C) values; (P,) `counts` tell how often each pair was drawn."""
+        if counts is None:
+            mean, member = values.mean(axis=1), self._member
+            counts = np.ones(values.shape[1])
+        else:
+            mean = np.tensordot(values, counts / counts.sum(), axes=(1, 0))
+            member = _of_drawn(self._member, counts)
+        if self._objective.share < 1.0:
+            by_block = np.matmul(member, values)
             scores = self._objective.over_blocks(self._normalised(by_block) @ self.weights)
         else:
             scores = self._normalised(mean) @ self.weights
         if self._links is not None:
             links = Links(values[..., self._links], self._classes)
-            scores = scores * links.factor(np.ones((1, values.shape[1])))[0]
+            scores = scores * links.factor(counts[None])[0]
         if self._time is not None:
             scores = scores * self._objective.hurry(mean[:, self._time])
         return np.asarray(scores)
@@ -107,6 +113,14 @@ def _membership(blocks: NDArray[np.int64]) -> Array:
         return np.eye(len(blocks))
     member = (blocks[None] == names[:, None]).astype(np.float64)
     return np.asarray(member / member.sum(axis=1, keepdims=True))
+
+
+def _of_drawn(member: Array, counts: Array) -> Array:
+    """(B, P) weights of the drawn pairs in the means of those blocks that were drawn."""
+    drawn = member * counts
+    total = drawn.sum(axis=1, keepdims=True)
+    there = total[:, 0] > 0
+    return np.asarray(drawn[there] / total[there])
 
 
 def chances(drawn: Array) -> Array:

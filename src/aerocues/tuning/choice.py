@@ -1,0 +1,270 @@
+"""The best combination for a purpose, from finished measurements, within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.arguments import (
+    check_choice,
+    check_positive,
+    check_whole,
+    megabytes_of,
+    seconds_of,
+)
+from aerocues.defaults import RESAMPLES
+from aerocues.errors import ScoreError
+from aerocues.methods.licences import why_not_licensed
+from aerocues.notebooks import as_html
+from aerocues.phrases import count, likelihood
+from aerocues.results.combination_columns import COMBINATION
+from aerocues.scoring.constraints import LIMITS, costs_of, exceeded
+from aerocues.scoring.finished import FinishedScores, scores_of_finished
+from aerocues.scoring.measured import Measured, opened, rows_of_dataset
+from aerocues.scoring.objectives import OBJECTIVES, Objective
+from aerocues.scoring.settings import Names, names_of
+from aerocues.scoring.valuation import chances
+
+if TYPE_CHECKING:
+    import polars as pl
+
+Array = NDArray[np.float64]
+LEAST_SHARE = 0.5
+"""Share of the pairs of a dataset on which a combination must have been measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """What finished measurements say for a purpose.
+
+    Attributes
+    ----------
+    objective : Objective
+    datasets : tuple of str
+    presets : tuple of str
+        Scoring preset of each dataset.
+    pairs : int
+        Of all datasets.
+    ranked : pl.DataFrame
+        One row per combination within the limits, the best first: ``combination, score,
+        probability`` (of being the best of them; null with a single pair), ``success_rate``, what
+        is limited (see `constraints.LIMITS`) and, with several datasets, ``score_NAME``.
+    excluded : mapping of str to str
+        Why each other combination was left out.
+    """
+
+    objective: Objective
+    datasets: tuple[str, ...]
+    presets: tuple[str, ...]
+    pairs: int
+    ranked: pl.DataFrame
+    excluded: Mapping[str, str]
+
+    @property
+    def best(self) -> str:
+        """The combination to take."""
+        return str(self.ranked[COMBINATION][0])
+
+    def __repr__(self) -> str:
+        chance = self.ranked["probability"][0]
+        told = "" if chance is None else f" with a probability of {likelihood(float(chance))}"
+        return (
+            f"Choice: take {self.best}, the best of {len(self.ranked):,} for "
+            f"{self.objective.title} on {count(self.pairs, 'pair')}{told}"
+        )
+
+    def _repr_html_(self) -> str:
+        return as_html(repr(self), self.ranked)
+
+
+def choose(
+    results: Measured | str | Path | Sequence[Measured | str | Path],
+    objective: str = "balanced",
+    *,
+    combinations: Names | None = None,
+    dataset: str | None = None,
+    max_seconds_per_image: float | str | None = None,
+    max_memory: float | str | None = None,
+    max_descriptor_bytes: float | None = None,
+    licence: str | None = None,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+) -> Choice:
+    """Choose a combination from finished measurements, without measuring anything.
+
+    Each dataset is scored by itself, over all combinations measured on it; a failed pair counts as
+    the worst. Scores of several datasets are averaged (objectives of a share of the scenes: over
+    that share of the datasets). Limits leave combinations out and do not change scores.
+
+    Parameters
+    ----------
+    results : Results, path, or sequence of them
+    objective : str
+        A row of `objectives.OBJECTIVES`.
+    combinations : str or sequence of str, optional
+        Patterns such as ``"ORB-*,*-HAM-BF"``: only these may be chosen.
+    dataset : str, optional
+        Only this dataset counts; all of them by default.
+    max_seconds_per_image : float or str, optional
+        Median time for one image and one pair: seconds, or a text such as ``"50ms"``.
+    max_memory : float or str, optional
+        Largest increase of memory in one stage: megabytes, or a text such as ``"300MB"``.
+    max_descriptor_bytes : float, optional
+        Bytes of one descriptor.
+    licence : {"permissive"}, optional
+        Which licences the code of the methods may have.
+    resamples, seed : int
+        Of the probabilities: pairs (whole sequences where there are enough) are drawn anew.
+
+    Returns
+    -------
+    Choice
+
+    Raises
+    ------
+    AerocuesError
+        If an argument makes no sense, something was not measured, or no combination is left.
+    """
+    check_choice("objective", objective, OBJECTIVES)
+    check_whole("resamples", resamples, 2)
+    most: dict[str, float] = {}
+    if max_seconds_per_image is not None:
+        most["max_seconds_per_image"] = seconds_of("max_seconds_per_image", max_seconds_per_image)
+    if max_memory is not None:
+        most["max_memory"] = megabytes_of("max_memory", max_memory)
+    if max_descriptor_bytes is not None:
+        check_positive("max_descriptor_bytes", max_descriptor_bytes)
+        most["max_descriptor_bytes"] = max_descriptor_bytes
+    rows = _datasets(results, dataset)
+    aim = OBJECTIVES[objective]
+    scored = [scores_of_finished(each, aim, resamples, seed) for each in rows]
+    costs = _worst_costs(rows)
+    excluded = _excluded(scored, costs, most, combinations, licence)
+    kept = [name for name in scored[0].alternatives if name not in excluded]
+    if not kept:
+        raise ScoreError(_none_left(excluded))
+    return Choice(
+        objective=aim,
+        datasets=tuple(each.dataset for each in scored),
+        presets=tuple(each.preset for each in scored),
+        pairs=sum(each.pairs for each in scored),
+        ranked=_ranked(scored, kept, aim).join(costs, on=COMBINATION, maintain_order="left"),
+        excluded=excluded,
+    )
+
+
+def _excluded(
+    scored: Sequence[FinishedScores],
+    costs: pl.DataFrame,
+    most: Mapping[str, float],
+    combinations: Names | None,
+    licence: str | None,
+) -> dict[str, str]:
+    """Why combinations are left out; the first reason counts."""
+    common = [name for name in scored[0].alternatives if all(name in each for each in scored)]
+    reasons = [
+        _not_everywhere(scored, common),
+        _hardly_measured(scored),
+        _unnamed(common, combinations),
+        exceeded(costs, most),
+    ]
+    if licence is not None:
+        reasons.append(why_not_licensed(common, licence))
+    found: dict[str, str] = {}
+    for each in reasons:
+        found |= {name: why for name, why in each.items() if name not in found}
+    return found
+
+
+def _datasets(
+    results: Measured | str | Path | Sequence[Measured | str | Path], dataset: str | None
+) -> list[pl.DataFrame]:
+    listed = (
+        results if isinstance(results, Sequence) and not isinstance(results, str) else [results]
+    )
+    tables = [opened(each).table() for each in listed]
+    if dataset is not None:
+        return [rows_of_dataset(table, dataset) for table in tables]
+    return [rows for table in tables for _, rows in table.group_by("dataset", maintain_order=True)]
+
+
+def _not_everywhere(scored: Sequence[FinishedScores], common: Sequence[str]) -> dict[str, str]:
+    names = dict.fromkeys(name for each in scored for name in each.alternatives)
+    return {
+        name: "not measured on " + ", ".join(each.dataset for each in scored if name not in each)
+        for name in names
+        if name not in set(common)
+    }
+
+
+def _hardly_measured(scored: Sequence[FinishedScores]) -> dict[str, str]:
+    """What was measured on few pairs, as a race leaves most combinations, is not comparable."""
+    return {
+        each.alternatives[position]: f"measured on fewer than half of the pairs of {each.dataset}"
+        for each in scored
+        for position in np.flatnonzero(each.measured_share < LEAST_SHARE)
+    }
+
+
+def _unnamed(names: Sequence[str], patterns: Names | None) -> dict[str, str]:
+    if patterns is None:
+        return {}
+    chosen = [pattern.upper() for pattern in names_of(patterns)]
+    return {
+        name: "not among the combinations asked for"
+        for name in names
+        if not any(fnmatchcase(name.upper(), pattern) for pattern in chosen)
+    }
+
+
+def _worst_costs(rows: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    """The largest cost of each combination over the datasets; unknown if it is on one of them."""
+    import polars as pl
+
+    found = pl.concat([costs_of(each) for each in rows])
+    names = [limit.column for limit in LIMITS]
+    return found.group_by(COMBINATION, maintain_order=True).agg(
+        pl.when(pl.col(name).is_not_null().all()).then(pl.col(name).max()).alias(name)
+        for name in names
+    )
+
+
+def _ranked(
+    scored: Sequence[FinishedScores], kept: Sequence[str], objective: Objective
+) -> pl.DataFrame:
+    import polars as pl
+
+    places = [[each.alternatives.index(name) for name in kept] for each in scored]
+    own = np.stack([each.scores[at] for each, at in zip(scored, places, strict=True)])
+    drawn = np.stack([each.drawn[:, at] for each, at in zip(scored, places, strict=True)])
+    success = [each.success_rate[at] for each, at in zip(scored, places, strict=True)]
+    names = [each.dataset for each in scored]
+    if len(set(names)) < len(names):
+        names = [f"{number} {name}" for number, name in enumerate(names, start=1)]
+    single = {f"score_{name}": row for name, row in zip(names, own, strict=True)}
+    over_sets = np.array([objective.over_blocks(each.T) for each in drawn.transpose(1, 0, 2)])
+    known = any(each.units > 1 for each in scored)
+    return pl.DataFrame(
+        {
+            COMBINATION: kept,
+            "score": objective.over_blocks(own.T),
+            "probability": chances(over_sets) if known else [None] * len(kept),
+            "success_rate": np.mean(success, axis=0),
+            **(single if len(scored) > 1 else {}),
+        },
+        schema_overrides={"probability": pl.Float64},
+    ).sort("score", COMBINATION, descending=[True, False])
+
+
+def _none_left(excluded: Mapping[str, str]) -> str:
+    name, why = next(iter(excluded.items()))
+    return (
+        f"no combination is within the limits ({len(excluded):,} left out, such as {name}: {why}); "
+        "allow more"
+    )
