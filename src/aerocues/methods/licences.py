@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, metadata
 
 from aerocues.errors import ArgumentError
-from aerocues.methods.parameters import OPENCV
+from aerocues.methods.parameters import AEROCUES, OPENCV
 
 PERMISSIVE = ("Apache", "MIT", "BSD", "ISC", "Zlib", "0BSD", "Unlicense", "CC0")
 """Beginnings of the names of licences without duties for the code around them."""
-KNOWN = {OPENCV: "Apache-2.0", "COLMAP": "BSD-3-Clause"}
+KNOWN = {OPENCV: "Apache-2.0", AEROCUES: "Apache-2.0", "COLMAP": "BSD-3-Clause"}
 KINDS = ("permissive",)
 
 
@@ -56,7 +56,7 @@ def why_not_licensed(combinations: Iterable[str], kind: str) -> dict[str, str]:
         raise ArgumentError(f"`licence` must be one of {', '.join(KINDS)}, got {kind!r}")
     methods = installed_methods()
     origins = {"COLMAP": "COLMAP"}
-    for kind_of_rows in (methods.every_matcher, methods.descriptors, methods.detectors):
+    for kind_of_rows in (methods.matchers, methods.descriptors, methods.detectors):
         origins |= {name: row.origin for name, row in kind_of_rows.items()}
     reasons: dict[str, str] = {}
     for name in combinations:
