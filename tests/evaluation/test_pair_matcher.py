@@ -36,7 +36,7 @@ def following(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("following")
 def test_it_is_measured_scored_and_drawn(views: Dataset, tmp_path: Path) -> None:
     results = aerocues.run(
-        views, "FOLLOW,ORB-ORB-HAM-BF", tmp_path, timing="shared", engine=InlineEngine()
+        views, "FOLLOW,ORB-*-FOLLOW", tmp_path, timing="shared", engine=InlineEngine()
     )
     rows = results.table().filter(detector="FOLLOW").to_dicts()
     assert [row["status"] for row in rows] == ["ok"] * 3
@@ -51,6 +51,11 @@ def test_it_is_measured_scored_and_drawn(views: Dataset, tmp_path: Path) -> None
         )
         assert row["match_seconds"] > 0
         assert json.loads(row["parameters"])["matcher"][2] == {"corners": 2000}
+    for row in results.table().filter(detector="ORB").to_dicts():
+        assert (row["status"], row["descriptor"], row["describe_seconds_1"]) == ("ok", "NONE", 0)
+        assert row["keypoints_1"] > row["matches"] > 100
+        assert row["detect_seconds_1"] > 0
+        assert row["ref_precision@3"] > 0.95
     assert FOLLOW in aerocues.score(results).frame()["combination"].to_list()
     context = make_context(views, preset_named("default"))
     drawn = Drawer(context).draw(0, Combination.parse(FOLLOW))

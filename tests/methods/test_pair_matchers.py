@@ -30,7 +30,7 @@ def following(monkeypatch: pytest.MonkeyPatch) -> Methods:
 def test_the_name_alone_is_a_combination(following: Methods) -> None:
     assert select_one(following, "follow") == FOLLOW
     assert select_one(following, str(FOLLOW)) == FOLLOW
-    assert select(following, "*-FOLLOW,FOLLOW-*,FOL*") == [FOLLOW]
+    assert select(following, "FOLLOW-*,FOL*") == [FOLLOW]
     assert FOLLOW in select(following)
     assert following.parameters(FOLLOW)["matcher"][2] == {"corners": 2000}  # type: ignore[index]
     assert following.matchers["FOLLOW"].upright
@@ -47,7 +47,9 @@ def test_it_is_one_more_combination(following: Methods) -> None:
     ("text", "words"),
     [
         ("follow", "FOLLOW-NONE-NONE-FOLLOW runs"),
-        ("SIFT-SIFT-L2-FOLLOW", "cannot run: FOLLOW is a pair matcher, which matches images"),
+        ("SIFT-SIFT-L2-FOLLOW", "cannot run: FOLLOW is a pair matcher and compares no"),
+        ("PIXELMAP-NONE-NONE-FOLLOW", "cannot run: PIXELMAP is a pair matcher, too"),
+        ("SIFT-NONE-NONE-FOLLOW", "SIFT-NONE-NONE-FOLLOW runs"),
         ("FOLLOW-SIFT-L2-BF", "cannot run: FOLLOW is a pair matcher and detects nothing"),
         ("SIFT-NONE-L2-BF", "cannot run: BF compares descriptors"),
         ("SIFT-SIFT-NONE-BF", "cannot run: BF compares descriptors"),

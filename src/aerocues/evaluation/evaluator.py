@@ -76,9 +76,10 @@ class Evaluator:
     ) -> str:
         """Fill the row of a combination; the status."""
         first, second = images
+        if combination.guided or not combination.of_pairs:
+            _record_detection(row, first, second)
         if combination.of_pairs:
             return self._two_views.measure_images(row, pair, images, combination)
-        _record_detection(row, first, second)
         described = (
             self._features.described(first, combination, pair.index),
             self._features.described(second, combination, pair.index),

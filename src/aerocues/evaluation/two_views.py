@@ -62,16 +62,16 @@ class TwoViewMeasurement:
         images: tuple[ImageFeatures, ImageFeatures],
         combination: Combination,
     ) -> str:
-        """As `measure`, of a pair matcher: there is no stage before the match."""
-        for stage in STAGES_OF_IMAGES:
+        """As `measure`, of a pair matcher: nothing is described, or even detected, before."""
+        for stage in STAGES_OF_IMAGES[combination.guided :]:
             for side in (1, 2):
                 record_time(row, f"{stage}_seconds_{side}", NO_TIME)
         names = f"{pair.image_1} and {pair.image_2}"
         found, time = self._stages.match_images(combination, images, names, pair.index)
         record_time(row, "match_seconds", time)
-        row["keypoints_1"] = row["keypoints_2"] = len(found.matches)
-        row["descriptor_bytes"] = 0
         first, second = (Described(features, NO_TIME) for features in found.features)
+        row["keypoints_1"], row["keypoints_2"] = len(first.features), len(second.features)
+        row["descriptor_bytes"] = 0
         return self._judge(row, TwoViews(pair, images, (first, second)), found.matches, combination)
 
     def _judge(self, row: Row, views: TwoViews, matches: Matches, combination: Combination) -> str:

@@ -17,7 +17,8 @@ class Combination:
     """What is evaluated; its text form is ``ORB-BEBLID-HAM-BF``.
 
     That of a pair matcher is ``PIXELMAP-NONE-NONE-PIXELMAP``: it finds the positions itself, and
-    needs neither descriptors nor a norm.
+    needs neither descriptors nor a norm. ``ORB-NONE-NONE-PIXELMAP`` are keypoints of ORB that it
+    guides.
 
     Parameters
     ----------
@@ -48,8 +49,13 @@ class Combination:
 
     @property
     def of_pairs(self) -> bool:
-        """Whether it is that of a pair matcher."""
+        """Whether a pair matcher matches."""
         return self.descriptor == NONE
+
+    @property
+    def guided(self) -> bool:
+        """Whether a pair matcher guides the keypoints of a detector."""
+        return self.of_pairs and self.detector != self.matcher
 
     @classmethod
     def of_pair_matcher(cls, name: str) -> Combination:

@@ -94,9 +94,11 @@ def _why_not_of_pairs(combination: Combination, methods: Methods) -> str | None:
     """Why parts of a pair matcher and of other combinations do not fit together."""
     whole = Combination.of_pair_matcher(combination.matcher)
     if methods.matchers[combination.matcher].of_pairs:
-        if combination == whole:
-            return None
-        return f"{combination.matcher} is a pair matcher, which matches images as a whole: {whole}"
+        if (combination.descriptor, combination.norm) != (NONE, NONE):
+            return f"{combination.matcher} is a pair matcher and compares no descriptors: {whole}"
+        if combination.guided and methods.detectors[combination.detector].of_pairs:
+            return f"{combination.detector} is a pair matcher, too, and one pair matcher is enough"
+        return None
     if methods.detectors[combination.detector].of_pairs:
         return f"{combination.detector} is a pair matcher and detects nothing in a single image"
     if NONE in (combination.descriptor, combination.norm):

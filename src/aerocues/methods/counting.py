@@ -38,7 +38,8 @@ def count_combinations(methods: Methods) -> Counts:
 def count_on_request(methods: Methods) -> dict[str, Counts]:
     """Count what each set of methods on request adds to the others, by the name of the set."""
     usual = frozenset(methods.combinations())
-    beyond = [each for each in methods.combinations(on_request=True) if each not in usual]
+    every = methods.combinations(on_request=True)
+    beyond = [each for each in every if each not in usual and not each.guided]
     sets = {each: {row.on_request for row in methods.rows(each)} - {""} for each in beyond}
     return {
         name: _counts((each for each in beyond if sets[each] == {name}), methods)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from aerocues.errors import SelectionError
+from aerocues.methods.combination import NONE
 from aerocues.methods.compatibility import why_incompatible, why_meaningless, why_unavailable
 from aerocues.methods.registry import Methods
 from aerocues.methods.selection import runnable
@@ -62,6 +63,6 @@ def _beginning(text: str, methods: Methods) -> str | None:
 
 
 def _close(name: str, known: Iterable[str]) -> str:
-    names = list(known)
+    names = [name for name in known if name != NONE]
     close = get_close_matches(name, names, n=3, cutoff=0.5)
     return f"did you mean {' or '.join(close)}?" if close else f"known are {', '.join(names)}"

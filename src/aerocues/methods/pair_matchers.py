@@ -17,6 +17,18 @@ OF_PAIRS: Mapping[str, tuple[DescriptorType, ...]] = {NONE: (NO_DESCRIPTOR.dtype
 """What pair matchers take: no descriptors, under no norm."""
 NO_NORM = NormRow(NONE, "", "nothing is compared: images are matched as a whole")
 
+PIXELMAP = MatcherRow(
+    "PIXELMAP",
+    "dense correspondence by grids of local affine maps, looked up on a regular grid",
+    "Brendeloekken, PIXELMAP, TechRxiv 173749998.89779329, 2025",
+    {NONE: {"quality": "low", "spacing": 8, "seed": 0}},
+    OF_PAIRS,
+    factory="aerocues.methods.pixelmap:PixelMap",
+    of_pairs=True,
+    on_request="extra",
+    origin=AEROCUES,
+)
+
 
 def positions_of(matcher: MatcherRow) -> DetectorRow:
     """What stands for a pair matcher where other combinations have a detector."""

@@ -13,8 +13,9 @@ from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT, MATCHERS, NORMS, MatcherRow, NormRow
-from aerocues.methods.pair_matchers import NO_DESCRIPTOR, NO_NORM, positions_of
+from aerocues.methods.pair_matchers import NO_DESCRIPTOR, NO_NORM, PIXELMAP, positions_of
 from aerocues.methods.parameters import OPENCV, why_missing
+from aerocues.methods.pixelmap import why_not_pixelmap
 from aerocues.methods.presets import Overrides, Preset
 
 
@@ -88,7 +89,8 @@ class Methods:
     def combinations(self, *, on_request: bool = False) -> Iterator[Combination]:
         """Every combination that can be written down, runnable or not.
 
-        Those of methods on request are left out without `on_request`.
+        Those of methods on request are left out without `on_request`, as are keypoints that a pair
+        matcher guides.
         """
 
         def taken(rows: Mapping[str, Any]) -> list[str]:
@@ -97,9 +99,13 @@ class Methods:
         pairs = [name for name in taken(self.matchers) if name in self.pair_matchers]
         apart = {*self.pair_matchers, NONE}
         tables = (taken(self.detectors), taken(self.descriptors), self.norms, taken(self.matchers))
-        for names in product(*([name for name in table if name not in apart] for table in tables)):
+        own = [[name for name in table if name not in apart] for table in tables]
+        for names in product(*own):
             yield Combination(*names)
         yield from map(Combination.of_pair_matcher, pairs)
+        if on_request:
+            for detector, matcher in product(own[0], pairs):
+                yield Combination(detector, NONE, NONE, matcher)
 
     def require(self, combination: Combination) -> None:
         """Check that the four names exist.
@@ -160,7 +166,7 @@ def opencv_methods() -> Methods:
 
     What this build of OpenCV lacks, as those without the contributed modules do, is unavailable.
     """
-    return Methods(
+    methods = Methods(
         {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DETECTORS},
         {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DESCRIPTORS},
         {row.name: row for row in NORMS},
@@ -169,3 +175,4 @@ def opencv_methods() -> Methods:
             EXACT.name: replace(EXACT, unavailable=why_not_exact()),
         },
     )
+    return methods.with_pair_matcher(replace(PIXELMAP, unavailable=why_not_pixelmap()))

@@ -62,10 +62,13 @@ class Asked:
     def takes(self, pattern: str, combination: Combination, methods: Methods) -> bool:
         """Whether a pattern in upper case takes a combination.
 
-        Wildcards alone do not take those with a method on request. A pair matcher's own name takes
-        its combination.
+        Wildcards alone do not take those with a method on request, nor keypoints that a pair
+        matcher guides. A pair matcher's own name takes its combination.
         """
-        names = [str(combination), *([combination.matcher] if combination.of_pairs else [])]
+        whole = combination.of_pairs and not combination.guided
+        names = [str(combination), *([combination.matcher] if whole else [])]
+        if combination.guided and combination.matcher not in pattern:
+            return False
         return any(fnmatchcase(name, pattern) for name in names) and all(
             not row.on_request or row.on_request in self.sets or row.name in pattern
             for row in methods.rows(combination)

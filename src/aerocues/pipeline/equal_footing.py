@@ -99,7 +99,7 @@ def at_equal_footing(
     """
     if not limit.count or not preset.chance_test:
         return preset, []
-    detectors = list(dict.fromkeys(c.detector for c in combinations if not c.of_pairs))
+    detectors = list(dict.fromkeys(c.detector for c in combinations if c.guided or not c.of_pairs))
     image = survey_image(images)
     return reach_keypoints(
         methods, preset, image, detectors, limit.count, seed=seed, progress=progress

@@ -15,9 +15,10 @@ from aerocues.pipeline.brute_force_time import SampledBruteForce
 from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.feature_source import Announce, silent
 from aerocues.pipeline.features import ImageFeatures, centre, run_stage, warm_up
+from aerocues.pipeline.guiding import guided_matches
 from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import IndexArray, Verdict, Verifier
-from aerocues.pipeline.whole_images import MatchedPair, matched_pair
+from aerocues.pipeline.whole_images import MatchedPair, matched_pair, undescribed
 from aerocues.processes.call import NO_PAIR, StageCall
 
 BRUTE_FORCE = "BF"
@@ -102,7 +103,7 @@ class PairStages:
         combination : Combination
             Of a pair matcher.
         images : tuple of ImageFeatures
-            The first and the second image, of which only the pixels count.
+            The first and the second image; their keypoints count where it guides them.
         names, pair
             As `images` and `pair` in `match`.
 
@@ -115,6 +116,8 @@ class PairStages:
         what = f"{combination.matcher} matching {names}"
         first, second = (image.pixels.bgr for image in images)
         matcher = self._pair_matcher(combination.matcher, (first, second), what)
+        if combination.guided:
+            return run_stage(what, lambda: self._guided(matcher, images))
         raw, time = run_stage(what, lambda: self._clock.time(lambda: matcher.call(first, second)))
         found = run_stage(what, lambda: matcher.read(raw))
         return matched_pair(found, images, self._protocol.limit, self._protocol.seed), time
@@ -158,6 +161,20 @@ class PairStages:
             own = self._protocol.with_threshold(threshold)
             self._verifiers[threshold] = Verifier(own, self._geometry, self._clock)
         return self._verifiers[threshold]
+
+    def _guided(
+        self, matcher: ArrayPairMatcher, images: tuple[ImageFeatures, ImageFeatures]
+    ) -> tuple[MatchedPair, StageTime]:
+        """Keypoints that the pair matcher guides; looking for them is part of the time."""
+        one, other = images
+
+        def call() -> Matches:
+            found = matcher.read(matcher.call(one.pixels.bgr, other.pixels.bgr))
+            return guided_matches(found, one.keypoints, other.keypoints)
+
+        matches, time = self._clock.time(call)
+        first, second = (undescribed(image.keypoints, image.size) for image in images)
+        return MatchedPair((first, second), matches), time
 
     def _pair_matcher(
         self, name: str, images: tuple[NDArray[np.uint8], NDArray[np.uint8]], what: str

@@ -19,7 +19,7 @@ class MatchedPair:
     Parameters
     ----------
     features : tuple of Features
-        N positions in each image, without descriptors.
+        The positions in each image, or the keypoints that were guided; descriptors are empty.
     matches : Matches
         Of each position with the one of the same index; the distance is minus the score.
     """
@@ -52,11 +52,16 @@ def matched_pair(
             found = found.take(are_valid(points, image.pixels.valid))
     found = found.take(limit.kept(_keypoints(found.points_1, found), seed))
     first, second = (
-        Features(_keypoints(points, found), np.empty((len(found), 0), np.float32), image.size)
+        undescribed(_keypoints(points, found), image.size)
         for points, image in zip((found.points_1, found.points_2), images, strict=True)
     )
     indices = np.repeat(np.arange(len(found), dtype=np.int32)[:, None], 2, axis=1)
     return MatchedPair((first, second), Matches(indices, -found.scores))
+
+
+def undescribed(keypoints: Keypoints, image_size: tuple[int, int]) -> Features:
+    """Keypoints with descriptors of nothing."""
+    return Features(keypoints, np.empty((len(keypoints), 0), np.float32), image_size)
 
 
 def _keypoints(points: Float32Array, found: PointMatches) -> Keypoints:

@@ -18,7 +18,7 @@ from aerocues.pipeline.pair_stages import PairStages
 from aerocues.processes.call import StageCall
 from aerocues.reconstruction.feature_size import at_full_size, smaller
 from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
-from aerocues.reconstruction.merging import merged
+from aerocues.reconstruction.merging import matched_keypoints, merged
 from aerocues.reconstruction.scene import Scene
 
 HELD_IN_MEMORY = 64
@@ -88,7 +88,7 @@ class SceneMatcher:
         return MatchedScene(keypoints, pairs, seconds, matching_seconds)
 
     def _match_images(self) -> MatchedScene:
-        """What a pair matcher finds; positions of several pairs become keypoints of images."""
+        """What a pair matcher finds or guides; positions of several pairs become keypoints."""
         found = {}
         seconds = 0.0
         width, chosen = self._scene.protocol.features_width, self._scene.dataset.pairs
@@ -101,7 +101,8 @@ class SceneMatcher:
             seconds += time.cpu
             self._features.trim()
         images_by_name = {image.name: image for image in self._scene.dataset.images}
-        keypoints, pairs = merged(images_by_name, found)
+        arrange = matched_keypoints if self._combination.guided else merged
+        keypoints, pairs = arrange(images_by_name, found)
         full = {
             name: at_full_size(each, images_by_name[name], width)
             for name, each in keypoints.items()

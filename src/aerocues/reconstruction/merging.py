@@ -49,6 +49,21 @@ def merged(
     return keypoints, pairs
 
 
+def matched_keypoints(
+    images: Iterable[str], found: Mapping[Names, MatchedPair]
+) -> tuple[dict[str, Keypoints], dict[Names, PairMatches]]:
+    """As `merged`, where a pair matcher guides: keypoints are the same in all pairs of an image."""
+    keypoints = {image: Keypoints.from_xy(np.empty((0, 2))) for image in images}
+    for names, each in found.items():
+        for name, features in zip(names, each.features, strict=True):
+            keypoints[name] = features.keypoints
+    pairs = {
+        names: PairMatches(each.matches.indices, each.matches.distance)
+        for names, each in found.items()
+    }
+    return keypoints, pairs
+
+
 def _cells(xy: Float32Array) -> tuple[Keypoints, Int32Array]:
     """A keypoint for each cell that holds positions, and the keypoint of each position."""
     cells = np.floor(xy / CELL + 0.5).astype(np.int64)

@@ -129,7 +129,8 @@ class Scene:
     def parameters(self, combination: Combination) -> dict[str, object]:
         """Everything that decides what the methods of a combination compute in a scene."""
         parameters = self.methods.parameters(combination)
-        return {**parameters, "merged_within": CELL} if combination.of_pairs else parameters
+        merged = combination.of_pairs and not combination.guided
+        return {**parameters, "merged_within": CELL} if merged else parameters
 
     def settings_key(self) -> str:
         """Key of the settings that all combinations share."""

@@ -109,6 +109,8 @@ class Drawer:
     def _match(self, pair: Pair, combination: Combination) -> DrawnMatches:
         images = "this pair"
         seen = (self._detect(combination, pair.image_1), self._detect(combination, pair.image_2))
+        if combination.guided and not all(len(image.keypoints) for image in seen):
+            raise StageError("no_keypoints", None)
         if combination.of_pairs:
             whole, _ = self._stages.match_images(combination, seen, images)
             (first, second), matches = whole.features, whole.matches
