@@ -15,7 +15,9 @@ from aerocues.exports.targets import TARGETS
 from aerocues.methods.compatibility import incompatibility, why_meaningless
 from aerocues.methods.descriptors import DESCRIPTORS
 from aerocues.methods.detectors import DETECTORS
+from aerocues.methods.extra import EXTRA_DESCRIPTORS, EXTRA_DETECTORS, EXTRA_MATCHERS
 from aerocues.methods.matchers import MATCHERS, NORMS
+from aerocues.methods.pair_matchers import PIXELMAP
 from aerocues.methods.preset_files import tuned_record
 from aerocues.methods.presets import preset_named, preset_names
 from aerocues.methods.registry import opencv_methods
@@ -67,6 +69,21 @@ def norms_and_matchers() -> Iterator[tuple[str, ...]]:
     for row in MATCHERS:
         by_norm = (f"{norm}: {_parameters(values)}" for norm, values in row.parameters.items())
         yield f"`{row.name}`", "matcher", row.title, "; ".join(by_norm)
+
+
+def extra() -> Iterator[tuple[str, ...]]:
+    """One row a method of the set `extra`."""
+    yield "name", "kind", "what it is", "parameters", "source"
+    classic = DETECTORS[0].parameters.items()
+    for one in EXTRA_DETECTORS:
+        own = _parameters(dict(one.parameters.items() - classic))
+        yield f"`{one.name}`", "detector", one.factory, own, one.reference
+    for other in EXTRA_DESCRIPTORS:
+        yield f"`{other.name}`", "descriptor", f"root of {other.factory}", "", other.reference
+    for row in (*EXTRA_MATCHERS, PIXELMAP):
+        kind = "pair matcher" if row.of_pairs else "matcher"
+        own = _parameters(next(iter(row.parameters.values())))
+        yield f"`{row.name}`", kind, row.title, own, row.reference
 
 
 def presets() -> Iterator[tuple[str, ...]]:
@@ -270,7 +287,9 @@ def targets() -> Iterator[tuple[str, ...]]:
 
 
 TABLES: dict[str, tuple[Table, ...]] = {
-    "methods.md": (detectors, biases, descriptors, norms_and_matchers, presets, compatibility),
+    "methods.md": (
+        *(detectors, biases, descriptors, norms_and_matchers, extra, presets, compatibility),
+    ),
     "measuring.md": (statuses,),
     "metrics.md": (counts, metrics, reference, ground_truth, times),
     "reconstruction.md": (reconstruction_statuses, reconstructions),

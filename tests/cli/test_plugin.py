@@ -21,7 +21,7 @@ import numpy as np
 from aerocues import Features, Keypoints
 
 
-class RootSift:
+class SqrtSift:
     dtype = "float32"
 
     def describe(self, image, keypoints):
@@ -39,21 +39,21 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.delitem(sys.modules, "own_sift", raising=False)
     monkeypatch.chdir(tmp_path)
     Path("own_sift.py").write_text(ROOT_SIFT)
-    return "own_sift:RootSift"
+    return "own_sift:SqrtSift"
 
 
 def test_it_is_listed_and_explained(call: Call, plugin: str) -> None:
     listed = json.loads(call("methods", "--json", "--plugin", plugin).out)["descriptors"]
-    assert listed[-1]["name"] == "ROOTSIFT"
-    assert call("methods", "list", "SIFT-ROOTSIFT-*", "--plugin", plugin).out.split() == [
-        "SIFT-ROOTSIFT-L2-BF",
-        "SIFT-ROOTSIFT-L2-FLANN",
+    assert listed[-1]["name"] == "SQRTSIFT"
+    assert call("methods", "list", "SIFT-SQRTSIFT-*", "--plugin", plugin).out.split() == [
+        "SIFT-SQRTSIFT-L2-BF",
+        "SIFT-SQRTSIFT-L2-FLANN",
     ]
-    assert "runs" in call("methods", "why", "GFTT-ROOTSIFT-L2-BF", "--plugin", plugin).out
+    assert "runs" in call("methods", "why", "GFTT-SQRTSIFT-L2-BF", "--plugin", plugin).out
 
 
 def test_workers_measure_it(call: Call, plugin: str, photos: Path, tmp_path: Path) -> None:
-    combinations = ("--combinations", "SIFT-ROOTSIFT-L2-BF,SIFT-SIFT-L2-BF", "--timing", "shared")
+    combinations = ("--combinations", "SIFT-SQRTSIFT-L2-BF,SIFT-SIFT-L2-BF", "--timing", "shared")
     output = tmp_path / "results"
     answer = call("run", photos, "-o", output, *combinations, "--plugin", plugin, "--workers", 1)
     assert answer.code == 0, answer.err

@@ -14,6 +14,8 @@ from aerocues.cli.options import (
     JsonOption,
     NoPluginsOption,
     PluginOption,
+    WithOption,
+    with_sets,
 )
 
 if TYPE_CHECKING:
@@ -81,6 +83,7 @@ def list_combinations(
     ] = None,
     detectors: DetectorsOption = None,
     descriptors: DescriptorsOption = None,
+    sets: WithOption = None,
     everything: EverythingOption = False,
     plugin: PluginOption = None,
     no_plugins: NoPluginsOption = False,
@@ -91,7 +94,7 @@ def list_combinations(
 
     chosen = select(
         installed_methods(),
-        globs,
+        with_sets(globs, sets),
         detectors=detectors,
         descriptors=descriptors,
         everything=everything,

@@ -60,7 +60,7 @@ PluginOption = Annotated[
     typer.Option(
         "--plugin",
         metavar="MODULE:CLASS",
-        help="Add a method of your own, such as mymodule:RootSift; may be repeated.",
+        help="Add a method of your own, such as mymodule:SqrtSift; may be repeated.",
         callback=_register_all,
     ),
 ]
@@ -83,6 +83,20 @@ CombinationsOption = Annotated[
         metavar="GLOBS", help="Use only these combinations, such as 'ORB-*-HAM-BF,!*-BOOST-*'."
     ),
 ]
+WithOption = Annotated[
+    str | None,
+    typer.Option(
+        "--with", metavar="SETS", help="Use these sets of methods on request, too, such as extra."
+    ),
+]
+
+
+def with_sets(combinations: str | None, sets: str | None) -> str | None:
+    """Patterns of combinations that ask for sets of methods, too."""
+    asked = [f"+{name.strip()}" for name in (sets or "").split(",") if name.strip()]
+    return ",".join([*([combinations] if combinations else []), *asked]) or None
+
+
 DetectorsOption = Annotated[
     str | None, typer.Option(metavar="GLOBS", help="Use only these detectors.")
 ]

@@ -32,7 +32,9 @@ from aerocues.cli.options import (
     SeedOption,
     SubsetOption,
     TopOption,
+    WithOption,
     WorkersOption,
+    with_sets,
 )
 from aerocues.cli.serving import LiveOption
 from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
@@ -94,6 +96,7 @@ def recommend(
     ] = None,
     live: LiveOption = False,
     combinations: CombinationsOption = None,
+    sets: WithOption = None,
     preset: MethodPresetOption = "default",
     max_keypoints: MaxKeypointsOption = FLIGHT_KEYPOINTS,
     max_width: MaxWidthOption = RACE_WIDTH,
@@ -162,7 +165,7 @@ def recommend(
         with display_and_page(folder, live=live) as (_, progress):
             found = aerocues.recommend(
                 images,
-                combinations,
+                with_sets(combinations, sets),
                 folder,
                 budget=budget,
                 objective=objective.value,

@@ -32,7 +32,9 @@ from aerocues.cli.options import (
     SequencesOption,
     SubsetOption,
     TopOption,
+    WithOption,
     WorkersOption,
+    with_sets,
 )
 from aerocues.cli.serving import LiveOption
 from aerocues.defaults import CALL_TIMEOUT, TIMED_PAIRS
@@ -71,6 +73,7 @@ def run(
     ],
     live: LiveOption = False,
     combinations: CombinationsOption = None,
+    sets: WithOption = None,
     detectors: DetectorsOption = None,
     descriptors: DescriptorsOption = None,
     everything: EverythingOption = False,
@@ -161,7 +164,7 @@ def run(
         tell_images(images)
         arguments: dict[str, Any] = {
             "dataset": images,
-            "combinations": combinations,
+            "combinations": with_sets(combinations, sets),
             "output": output,
             "detectors": detectors,
             "descriptors": descriptors,

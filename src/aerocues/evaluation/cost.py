@@ -9,6 +9,7 @@ from aerocues.methods.registry import Methods
 
 TYPICAL_MEGAPIXELS = 0.6
 FLANN_SECONDS_PER_KEYPOINT = 1e-4
+BY_BRUTE_FORCE = frozenset(("BF", "GMS", "RATIO"))
 SHORTEST_UNIT = 1.0
 """CPU seconds per image below which work is not divided."""
 
@@ -18,7 +19,7 @@ def match_seconds(methods: Methods, combination: Combination, keypoints: float) 
 
     Measured with OpenCV's matchers: the time per pair of descriptors grows with their length.
     """
-    if combination.matcher != "BF":
+    if combination.matcher not in BY_BRUTE_FORCE:
         return FLANN_SECONDS_PER_KEYPOINT * keypoints
     row = methods.descriptors[combination.descriptor]
     per_column = 0.17 if row.dtype == "float32" else 0.88 if combination.norm == "L2" else 0.15

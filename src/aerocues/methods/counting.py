@@ -67,9 +67,9 @@ def named(
     descriptors: str | Iterable[str] | None = None,
 ) -> list[Combination]:
     """Every combination that the arguments of `select` name, runnable or not."""
-    asked = Asked.of(patterns, methods)
     kept_detectors = split_names(detectors) or ["*"]
     kept_descriptors = split_names(descriptors) or ["*"]
+    asked = Asked.of(patterns, methods, (*kept_detectors, *kept_descriptors))
     return [
         combination
         for combination in methods.combinations(on_request=True)

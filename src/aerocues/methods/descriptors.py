@@ -90,10 +90,11 @@ DESCRIPTORS: tuple[DescriptorRow, ...] = (
         "uint8",
         32,
         3,
-        not_detectors={
-            "SIFT": "the ORB descriptor reads SIFT's packed octave as a pyramid level and "
-            "would ask for about 72 GB"
-        },
+        not_detectors=dict.fromkeys(
+            ("SIFT", "SIFT_COLMAP"),
+            "the ORB descriptor reads SIFT's packed octave as a pyramid level and would ask for "
+            "about 72 GB",
+        ),
         unbiased=_UNBIASED["ORB"],
     ),
     DescriptorRow(

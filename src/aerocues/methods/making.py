@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from aerocues.errors import MethodUnavailableError
 from aerocues.methods.arrays import DescriptorArray, Features, Keypoints, Matches, finite_features
 from aerocues.methods.combination import NONE
+from aerocues.methods.descriptors import DescriptorRow
 from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,
@@ -19,9 +20,10 @@ from aerocues.methods.opencv import (
     LevelDescriptor,
     OpenCVDescriptor,
     OpenCVDetector,
+    RootSift,
 )
 from aerocues.methods.pair_matching import ArrayPairMatcher
-from aerocues.methods.parameters import OPENCV, Value
+from aerocues.methods.parameters import AEROCUES, OPENCV, Value
 from aerocues.methods.plugins import load_factory
 from aerocues.methods.positions import EXACT_POSITIONS
 from aerocues.methods.registry import Methods
@@ -54,6 +56,12 @@ OPENCV_MATCHERS: Mapping[str, Callable[[NormRow, Mapping[str, Value]], MatcherSt
     "FlannBasedMatcher": FlannMatcher,
 }
 """What runs each class of OpenCV that rows of the table of matchers name."""
+
+
+OWN_DESCRIPTORS: Mapping[str, Callable[[DescriptorRow], DescriptorStage]] = {
+    "ROOTSIFT": RootSift,
+}
+"""What aerocues makes of OpenCV's descriptors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +152,7 @@ def _plugin(factory: str, parameters: dict[str, Any]) -> Any:
 def make_detector(methods: Methods, name: str) -> DetectorStage:
     """Make the detector `name`; MethodUnavailableError where it cannot be made."""
     row = methods.detectors[name]
-    if row.origin == OPENCV:
+    if row.origin in (OPENCV, AEROCUES):
         return OpenCVDetector(row)
     return ArrayDetector(_plugin(row.factory, dict(row.parameters)))
 
@@ -155,6 +163,8 @@ def make_descriptor(methods: Methods, name: str, detector: str = "") -> Descript
     MethodUnavailableError where it cannot be made.
     """
     row = methods.descriptor_on(name, detector)
+    if row.origin == AEROCUES:
+        return OWN_DESCRIPTORS[row.name](row)
     if row.origin == OPENCV:
         return (LevelDescriptor if row.parameters.get(EXACT_POSITIONS) else OpenCVDescriptor)(row)
     return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)

@@ -89,6 +89,17 @@ class OpenCVDescriptor:
         return finite_features(Keypoints.from_opencv(native), descriptors)
 
 
+class RootSift(OpenCVDescriptor):
+    """The SIFT descriptor, as the square root of its share of the whole (L1): RootSIFT."""
+
+    def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
+        native, descriptors = super().call(image, prepared)
+        if descriptors is None:
+            return native, None
+        whole = np.maximum(descriptors.sum(axis=1, keepdims=True), np.finfo(np.float32).tiny)
+        return native, np.sqrt(descriptors / whole)
+
+
 class LevelDescriptor(OpenCVDescriptor):
     """A descriptor of OpenCV that looks for keypoints on levels of a pyramid, at a wrong place.
 

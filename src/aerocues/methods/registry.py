@@ -12,7 +12,9 @@ from aerocues.methods.combination import NONE, Combination
 from aerocues.methods.descriptors import DESCRIPTORS, DescriptorRow
 from aerocues.methods.detectors import DETECTORS, DetectorRow
 from aerocues.methods.exact.availability import why_not_exact
+from aerocues.methods.extra import EXTRA_DESCRIPTORS, EXTRA_DETECTORS, EXTRA_MATCHERS
 from aerocues.methods.matchers import EXACT, MATCHERS, NORMS, MatcherRow, NormRow
+from aerocues.methods.motion_statistics import why_not_gms
 from aerocues.methods.pair_matchers import NO_DESCRIPTOR, NO_NORM, PIXELMAP, positions_of
 from aerocues.methods.parameters import OPENCV, why_missing
 from aerocues.methods.pixelmap import why_not_pixelmap
@@ -166,13 +168,13 @@ def opencv_methods() -> Methods:
 
     What this build of OpenCV lacks, as those without the contributed modules do, is unavailable.
     """
+    detectors, descriptors = (*DETECTORS, *EXTRA_DETECTORS), (*DESCRIPTORS, *EXTRA_DESCRIPTORS)
+    missing = {EXACT.name: why_not_exact(), "GMS": why_not_gms()}
+    matchers = (*MATCHERS, EXACT, *EXTRA_MATCHERS)
     methods = Methods(
-        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DETECTORS},
-        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in DESCRIPTORS},
+        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in detectors},
+        {row.name: replace(row, unavailable=why_missing(row.factory)) for row in descriptors},
         {row.name: row for row in NORMS},
-        {
-            **{row.name: row for row in MATCHERS},
-            EXACT.name: replace(EXACT, unavailable=why_not_exact()),
-        },
+        {row.name: replace(row, unavailable=missing.get(row.name)) for row in matchers},
     )
     return methods.with_pair_matcher(replace(PIXELMAP, unavailable=why_not_pixelmap()))

@@ -41,14 +41,17 @@ class Asked:
         Globs in upper case.
     sets : frozenset of str
         Sets of methods on request that wildcards take, too.
+    named : frozenset of str
+        Methods that are named besides.
     """
 
     includes: tuple[str, ...]
     excludes: tuple[str, ...]
     sets: frozenset[str]
+    named: frozenset[str]
 
     @classmethod
-    def of(cls, patterns: Patterns | None, methods: Methods) -> Asked:
+    def of(cls, patterns: Patterns | None, methods: Methods, named: Iterable[str] = ()) -> Asked:
         """Read patterns; SelectionError where a set does not exist."""
         wanted = split_names(patterns)
         sets = frozenset(text[1:].lower() for text in wanted if text.startswith(WITH))
@@ -57,7 +60,7 @@ class Asked:
             raise SelectionError(f"there is no set of methods {unknown[0]!r}; known are {known}")
         includes = tuple(text for text in wanted if text[0] not in f"!{WITH}")
         excludes = tuple(text[1:] for text in wanted if text.startswith("!"))
-        return cls(includes or ("*",), excludes, sets)
+        return cls(includes or ("*",), excludes, sets, frozenset(named))
 
     def takes(self, pattern: str, combination: Combination, methods: Methods) -> bool:
         """Whether a pattern in upper case takes a combination.
@@ -70,7 +73,10 @@ class Asked:
         if combination.guided and combination.matcher not in pattern:
             return False
         return any(fnmatchcase(name, pattern) for name in names) and all(
-            not row.on_request or row.on_request in self.sets or row.name in pattern
+            not row.on_request
+            or row.on_request in self.sets
+            or row.name in self.named
+            or row.name in pattern
             for row in methods.rows(combination)
         )
 
@@ -168,7 +174,8 @@ def select(
     """
     can_run = runnable(methods, on_request=True)
     usual = [each for each in can_run if everything or why_meaningless(each, methods) is None]
-    asked = Asked.of(patterns, methods)
+    kept_detectors, kept_descriptors = split_names(detectors), split_names(descriptors)
+    asked = Asked.of(patterns, methods, (*kept_detectors, *kept_descriptors))
     chosen: set[Combination] = set()
     for pattern in asked.includes:
         pool = usual if WILDCARDS & set(pattern) else can_run
@@ -177,8 +184,8 @@ def select(
             raise _unmatched(asked, pattern, methods)
         chosen |= found
     kept = [each for each in can_run if each in chosen and not asked.leaves_out(each)]
-    kept = _by_component(kept, "detector", split_names(detectors))
-    kept = _by_component(kept, "descriptor", split_names(descriptors))
+    kept = _by_component(kept, "detector", kept_detectors)
+    kept = _by_component(kept, "descriptor", kept_descriptors)
     if not kept:
         raise SelectionError("the selection is empty; take out fewer combinations")
     return kept
