@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain, cycle, repeat
@@ -21,11 +23,23 @@ class Machine:
     def perf_counter(self) -> float:
         return self.wall
 
-    def thread_time(self) -> float:
+    def process_time(self) -> float:
         return self.cpu
 
 
-@pytest.fixture(autouse=True)
+def test_a_method_is_charged_for_what_its_threads_do() -> None:
+    def in_a_thread() -> None:
+        working = threading.Thread(target=lambda: sum(range(2_000_000)))
+        working.start()
+        working.join()
+
+    begun = time.process_time()
+    _, taken = Clock().time(in_a_thread)
+    spent = time.process_time() - begun
+    assert 0.5 * spent < taken.cpu <= spent
+
+
+@pytest.fixture
 def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     made = Machine()
     monkeypatch.setattr("aerocues.pipeline.clock.time", made)

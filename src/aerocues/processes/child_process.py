@@ -24,9 +24,10 @@ from aerocues.scratch_folders import remove_left_over, scratch_prefix
 
 START_SECONDS = 120.0
 LAST_WORDS = 300
-# Products of matrices would otherwise take every core in every process, and the times of one thread
-# would hide it.
-ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+# Products of matrices and methods in Rust would otherwise take every core in every process.
+ONE_THREAD = dict.fromkeys(
+    ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
+)
 # A process that computes uses far more of the wall time than this, on any crowded machine.
 IDLE_SHARE = 0.01
 
