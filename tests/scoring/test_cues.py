@@ -141,3 +141,15 @@ def test_rounding_of_a_mean_leaves_nothing_of_the_worst(value: float, costs: lis
         values = np.repeat([[[value]], [[value + 0.5]]], repeats, axis=1)
         scores = score(table_of(values, costs), ScoreSettings(alpha=0.1))
         np.testing.assert_allclose(np.sort(scores.scores), [0, 1], rtol=0, atol=1e-12)
+
+
+def test_bounds_above_zero_and_the_first_repeat_by_hand() -> None:
+    nan = float("nan")
+    values = [[[0.0], [4.0]], [[2.0], [2.0]], [[10.0], [6.0]], [[nan], [8.0]]]
+    settings = ScoreSettings(alpha=1, failures="omit", bounds="positive", needs_first=True)
+    # From 2, the least above 0, to 10, which the last one counts for without a score.
+    np.testing.assert_allclose(score(table_of(values), settings).scores, [0, 0, 0.75, nan])
+    every = replace(settings, needs_first=False)
+    np.testing.assert_allclose(score(table_of(values), every).scores, [0, 0, 0.75, 0.75])
+    measured = replace(every, bounds="measured")
+    np.testing.assert_allclose(score(table_of(values), measured).scores, [0.2, 0.2, 0.8, 0.8])

@@ -73,10 +73,10 @@ def drone(published: PublishedTable, shared_data: Path) -> Scores:
     return score(with_reconstruction(published("drone"), file), THESIS.settings)
 
 
-def assert_top(scores: Scores, expected: dict[str, float]) -> None:
+def assert_top(scores: Scores, expected: dict[str, float], within: float = 0.005) -> None:
     top = scores.order[: len(expected)]
     assert [scores.table.alternatives[position] for position in top] == list(expected)
-    np.testing.assert_allclose(scores.scores[top], list(expected.values()), rtol=0, atol=0.005)
+    np.testing.assert_allclose(scores.scores[top], list(expected.values()), rtol=0, atol=within)
 
 
 @pytest.mark.parametrize(("dataset", "expected"), [("synthetic", SYNTHETIC), ("oxford", OXFORD)])
@@ -89,6 +89,38 @@ def test_top_five_by_pairs(
 def test_top_five_with_reconstruction(drone: Scores) -> None:
     assert len(drone.table.criteria) == 11
     assert_top(drone, DRONE)
+
+
+PUBLISHED = SCORE_PRESETS["published"]
+AIRSIM = {
+    "orb-beblid-ham-bf": 0.7891,
+    "orb-teblid-ham-bf": 0.7782,
+    "orb-beblid-ham-flann": 0.7650,
+    "orb-teblid-ham-flann": 0.7635,
+    "kaze-sift-l2-bf": 0.7614,
+}
+UAV = {
+    "gftt-daisy-l2-bf": 0.7299,
+    "agast-sift-l2-bf": 0.7255,
+    "akaze-daisy-l2-bf": 0.7189,
+    "fast-sift-l2-bf": 0.7161,
+    "agast-daisy-l2-bf": 0.7124,
+}
+
+
+@pytest.mark.parametrize(
+    ("dataset", "expected"),
+    [("synthetic", SYNTHETIC), ("oxford", OXFORD), ("airsim", AIRSIM), ("uav", UAV)],
+)
+def test_the_published_bounds_give_the_published_figures(
+    published: PublishedTable, dataset: str, expected: dict[str, float]
+) -> None:
+    scores = score(published(dataset), PUBLISHED.settings)
+    assert_top(scores, expected, within=0.00015)
+
+
+def test_the_published_bounds_with_reconstruction(drone: Scores) -> None:
+    assert_top(score(drone.table, PUBLISHED.settings), DRONE, within=0.0006)
 
 
 def test_what_was_not_reconstructed_has_no_score(drone: Scores) -> None:

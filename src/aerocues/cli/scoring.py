@@ -37,7 +37,8 @@ PresetOption = Annotated[
     typer.Option(
         "--preset",
         metavar="NAME",
-        help="Scoring preset: default or thesis; by default the one that suits the results.",
+        help="Scoring preset, such as default or thesis (all in docs/scoring.md); by default the "
+        "one that suits the results.",
     ),
 ]
 CriteriaOption = Annotated[

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from aerocues.errors import ScoreError
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import MeasuredRows, table_of
-from aerocues.scoring.settings import SCORE_PRESETS
+from aerocues.scoring.settings import REPRODUCING, SCORE_PRESETS
 
 if TYPE_CHECKING:
     from aerocues.report.entry import ReportEntry
@@ -18,6 +18,8 @@ def preset_scores(found: ReportEntry) -> dict[str, list[float | None]]:
     measured = MeasuredRows(found.rows, found.models)
     scores = {}
     for preset in SCORE_PRESETS.values():
+        if preset.name == REPRODUCING:  # nobody is to choose by it
+            continue
         try:
             table = table_of(measured, preset.name, reconstruction=False).table
             by_name = score(table, preset.settings)

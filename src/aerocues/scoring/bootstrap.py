@@ -127,7 +127,7 @@ def bootstrap(scores: Scores, resamples: int = RESAMPLES, seed: int = 0) -> Boot
     for counts in draws(table, resamples, seed, max(1, BATCH_ELEMENTS // size)):
         means = sums.means(counts)
         found.append(score_batch(means, table, scores.settings))
-        means = replace(means, low=whole.low, high=whole.high)
+        means = replace(means, low=whole.low, high=whole.high, least_positive=whole.least_positive)
         normalised = normalise(means, table, scores.settings) ** scores.settings.alpha
         on_one_scale.append(normalised @ scores.weights * means.links)
     values = np.concatenate([batch.scores for batch in found])

@@ -27,6 +27,8 @@ class Means:
         Numbers of repeats.
     low, high : (batch, criteria) float64
         Smallest and largest value of all repeats of all alternatives.
+    least_positive : (batch, criteria) float64
+        Smallest of those values above 0; infinite if there is none.
     links : (batch, alternatives) float64
         What scores are multiplied by; 1 where the table has no links.
     """
@@ -36,6 +38,7 @@ class Means:
     failed: Array
     low: Array
     high: Array
+    least_positive: Array
     links: Array
 
 
@@ -58,37 +61,47 @@ class Sums:
         self._failed = table.failed.transpose(1, 0, 2).astype(np.float64).reshape(flat)
         self._low = np.where(missing, np.inf, by_repeat).min(axis=1)
         self._high = np.where(missing, -np.inf, by_repeat).max(axis=1)
+        self._positive = _above_zero(by_repeat).min(axis=1)
 
-    def means(self, counts: Array, bounds: tuple[Array, Array] | None = None) -> Means:
+    def means(self, counts: Array, like: Means | None = None) -> Means:
         """Means of resamples.
 
         Parameters
         ----------
         counts : (batch, repeats) float64
             Number of times each repeat was drawn.
-        bounds : pair of (1, criteria) float64, optional
-            Smallest and largest values; by default those of the drawn repeats.
+        like : Means, optional
+            Whose bounds are taken; by default those of the drawn repeats.
         """
         shape = (len(counts), *self._shape)
         valid = (counts @ self._valid).reshape(shape)
         total = (counts @ self._values).reshape(shape)
         mean = np.divide(total, valid, out=np.full(shape, np.nan), where=valid > 0)
-        low, high = self._bounds(counts) if bounds is None else bounds
+        low, high, positive = (
+            self._bounds(counts) if like is None else (like.low, like.high, like.least_positive)
+        )
         return Means(
             mean=mean,
             valid=valid,
             failed=(counts @ self._failed).reshape(shape),
             low=low,
             high=high,
+            least_positive=positive,
             links=_factor(self._links, counts, self._shape[0]),
         )
 
-    def _bounds(self, counts: Array) -> tuple[Array, Array]:
+    def _bounds(self, counts: Array) -> tuple[Array, Array, Array]:
         drawn = counts[:, :, None] > 0
         return (
             np.where(drawn, self._low, np.inf).min(axis=1),
             np.where(drawn, self._high, -np.inf).max(axis=1),
+            np.where(drawn, self._positive, np.inf).min(axis=1),
         )
+
+
+def _above_zero(values: Array) -> Array:
+    """The values above 0; others, and those that are missing, are infinite."""
+    return np.where(np.nan_to_num(values) > 0, values, np.inf)
 
 
 def plain_means(table: DecisionTable) -> Means:
@@ -103,6 +116,7 @@ def plain_means(table: DecisionTable) -> Means:
         failed=table.failed.sum(axis=1, dtype=np.float64)[None],
         low=np.where(missing, np.inf, table.values).min(axis=(0, 1))[None],
         high=np.where(missing, -np.inf, table.values).max(axis=(0, 1))[None],
+        least_positive=_above_zero(table.values).min(axis=(0, 1))[None],
         links=_factor(table.links, np.ones((1, len(table.repeats))), len(table.alternatives)),
     )
 
@@ -125,7 +139,9 @@ def normalise(means: Means, table: DecisionTable, settings: ScoreSettings) -> Ar
         NaN in all criteria of an alternative without a value in one of them.
     """
     low, high = means.low, means.high
-    if settings.bounds == "unit":
+    if settings.bounds == "positive":
+        low = means.least_positive
+    elif settings.bounds == "unit":
         low, high = np.zeros_like(low), np.ones_like(high)
     width = (high - low)[:, None, :]
     offset = means.mean - low[:, None, :]
@@ -141,5 +157,7 @@ def normalise(means: Means, table: DecisionTable, settings: ScoreSettings) -> Ar
         tried = means.valid + means.failed
         share = np.divide(means.valid, tried, out=np.zeros_like(tried), where=tried > 0)
         z = np.where(tried > 0, np.where(means.valid > 0, z * share, 0), np.nan)
+    if settings.needs_first:
+        z[:, np.isnan(table.values[:, 0, table.by_repeat]).any(axis=1)] = np.nan
     z[np.isnan(z).any(axis=2)] = np.nan
     return z

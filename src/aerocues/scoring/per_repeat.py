@@ -30,7 +30,7 @@ def scores_of_repeats(scores: Scores) -> Array:
     columns = []
     for start in range(0, number, BATCH):
         single = np.eye(number)[start : start + BATCH]
-        means = sums.means(single, bounds=(whole.low, whole.high))
+        means = sums.means(single, like=whole)
         normalised = normalise(means, table, settings) ** settings.alpha
         columns.append((normalised @ scores.weights * means.links).T)
     return np.concatenate(columns, axis=1)
