@@ -24,7 +24,7 @@ SMALL = (200, 150)
 # AKAZE's pyramid has as many levels as KAZE's from this size on, and FREAK's pattern on keypoints
 # of ORB's upper levels fits in.
 LARGE = (640, 330)
-DETECTORS = list(opencv_methods().detectors)
+DETECTORS = [name for name, row in opencv_methods().detectors.items() if not row.of_pairs]
 
 
 @dataclass(frozen=True)

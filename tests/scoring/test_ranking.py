@@ -112,6 +112,7 @@ def test_settings_tell_everything() -> None:
         "aggregation": "arithmetic",
         "failures": "worst",
         "bounds": "measured",
+        "needs_first": False,
         "criteria": ["c0", "c1", "c2", "c3"],
         "repeats": 6,
         "resamples": 7,

@@ -95,7 +95,7 @@ def score(
     max_descriptor_bytes: MaxBytesOption = None,
     licence: LicenceOption = None,
 ) -> None:
-    """Rank combinations by CUES, with uncertainty intervals; or for a purpose and within limits."""
+    """Rank combinations by CUES or for a purpose, with intervals."""
     targets = {"csv": csv, "latex": latex, "markdown": markdown}
     limits = Limits(max_seconds_per_image, max_memory, max_descriptor_bytes, licence)
     if objective is not None or limits.given():
