@@ -49,6 +49,8 @@ def test_score_ranks_for_a_purpose(call: Call, finished: Path, tmp_path: Path) -
         ["recommend", "photos", "--max-memory", "300MB"],
         ["recommend", "photos", "--json"],
         ["recommend", "photos", "--from", "RESULTS"],
+        ["recommend", "--from", "RESULTS", "--budget", "5min"],
+        ["recommend", "--from", "RESULTS", "--no-final"],
         ["recommend", "--from", "RESULTS", "--max-memory", "much"],
         ["recommend", "--from", "nowhere"],
         ["score", "RESULTS", "--objective", "speed", "--preset", "thesis"],

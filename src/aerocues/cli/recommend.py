@@ -45,7 +45,15 @@ if TYPE_CHECKING:
     from aerocues.tuning.recommendation import Recommendation
 
 
+# All other options belong to a race.
+OF_RESULTS = {
+    *("results", "objective", "combinations", "top", "seed", "plugin", "no_plugins", "as_json"),
+    *Limits.__dataclass_fields__,
+}
+
+
 def recommend(
+    context: typer.Context,
     dataset: Annotated[
         str | None,
         typer.Argument(
@@ -139,7 +147,8 @@ def recommend(
     began = time.monotonic()
     limits = Limits(max_seconds_per_image, max_memory, max_descriptor_bytes, licence)
     if results:
-        _from_results(results, dataset, objective, combinations, limits, top, seed, as_json=as_json)
+        _refuse_measuring(context)
+        _from_results(results, objective, combinations, limits, top, seed, as_json=as_json)
         return
     if dataset is None:
         raise typer.BadParameter("give DATASET to measure its images, or --from with results")
@@ -188,9 +197,20 @@ def recommend(
             _write_report(found, report)
 
 
+def _refuse_measuring(context: typer.Context) -> None:
+    """Raise a usage error where something was given that only a race takes."""
+    for parameter in context.command.params:
+        source = context.get_parameter_source(parameter.name or "")
+        if parameter.name not in OF_RESULTS and source and source.name == "COMMANDLINE":
+            dashed = [word for word in parameter.opts if word.startswith("--")]
+            named = dashed[0] if dashed else "DATASET"
+            raise typer.BadParameter(
+                f"{named} is for measuring, and --from for finished results; give one of the two"
+            )
+
+
 def _from_results(
     results: list[Path],
-    dataset: str | None,
     objective: Objective,
     combinations: str | None,
     limits: Limits,
@@ -204,8 +224,6 @@ def _from_results(
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.output import print_json
 
-    if dataset is not None:
-        raise typer.BadParameter(f"{dataset} is not measured with --from; give one of the two")
     with interruptible():
         found = aerocues.choose(
             results, objective.value, combinations=combinations, seed=seed, **limits.given()
