@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from aerocues.modelling.reconstruct import reconstruct
     from aerocues.pipeline.pipeline import Pipeline
     from aerocues.pipeline.two_images import MatchedImages, features, match
+    from aerocues.pipeline.upright import upright
     from aerocues.progress import Event
     from aerocues.reconstruction.models import Models
     from aerocues.report.figure import figure
@@ -56,6 +57,7 @@ _MODULES = {
     "Dataset": "datasets.dataset",
     "features": "pipeline.two_images",
     "match": "pipeline.two_images",
+    "upright": "pipeline.upright",
     "MatchedImages": "pipeline.two_images",
     "Pipeline": "pipeline.pipeline",
     "simulate": "simulation.simulate",
@@ -129,6 +131,7 @@ __all__ = [
     "score",
     "simulate",
     "tune",
+    "upright",
     "use",
     "validate",
     "write_report",

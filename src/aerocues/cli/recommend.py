@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.limit_options import (
     LicenceOption,
     Limits,
@@ -126,6 +127,7 @@ def recommend(
         ),
     ] = SURE,
     workers: WorkersOption = None,
+    upright: UprightOption = False,
     seed: SeedOption = 0,
     plugin: PluginOption = None,
     no_plugins: NoPluginsOption = False,
@@ -169,8 +171,9 @@ def recommend(
             band=band,
             every=every,
         )
-        tell_images(images)
         folder = output or Path(f"{images.name}-race")
+        images = turned(images, seed, folder, asked=upright)
+        tell_images(images)
         with display_and_page(folder, live=live) as (_, progress):
             found = aerocues.recommend(
                 images,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.next_commands import AsMeasured
 from aerocues.cli.options import (
     EQUALIZE,
@@ -112,6 +113,7 @@ def reconstruct(
         typer.Option("--baseline/--no-baseline", help="Add COLMAP's default to the table."),
     ] = True,
     preset: Annotated[str | None, METHOD_PRESET] = None,
+    upright: UprightOption = False,
     seed: SeedOption = 0,
     colours: Annotated[
         bool, typer.Option("--colours/--no-colours", help="Colour the points.")
@@ -161,6 +163,7 @@ def reconstruct(
             band=band,
             every=every,
         )
+        scene = turned(scene, seed, results, asked=upright)
         tell_images(scene)
         with display_and_page(results or output, live=live) as (_, progress):
             models = aerocues.reconstruct(

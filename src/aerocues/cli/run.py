@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.options import (
     BandOption,
     CombinationsOption,
@@ -124,6 +125,7 @@ def run(
             help=f"Pairs to time alone; {TIMED_PAIRS} by default, 0: all.",
         ),
     ] = None,
+    upright: UprightOption = False,
     seed: SeedOption = 0,
     timeout: Annotated[
         str, typer.Option(metavar="TIME", help="CPU time limit of one call, such as 90s or 10min.")
@@ -161,6 +163,7 @@ def run(
             band=band,
             every=every,
         )
+        images = turned(images, seed, None if dry_run else output, asked=upright)
         tell_images(images)
         arguments: dict[str, Any] = {
             "dataset": images,

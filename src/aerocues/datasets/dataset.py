@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol
 
@@ -116,16 +116,24 @@ class TrueView:
 class Image:
     """One image of a dataset; pixels are decoded on demand.
 
-    ``name`` is unique in its dataset (a path relative to it, with ``/``).
+    ``name`` is unique in its dataset (a path relative to it, with ``/``). ``turn`` is by how many
+    degrees counterclockwise, 0, 90, 180 or 270, it is turned while features are found in it; None
+    where nobody asked for that. Positions are those of the image as it is.
     """
 
     name: str
     source: ImageSource
     gps: GpsPosition | None = None
     truth: TrueView | None = None
+    turn: int | None = None
 
     def read(self) -> Pixels:
         return self.source.read()
+
+    def features_key(self) -> str | list[object]:
+        """What of the image decides its features: its content, and how it is turned."""
+        key = self.source.content_key()
+        return [key, self.turn] if self.turn else key
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,3 +235,14 @@ class Dataset:
     @cached_property
     def _by_name(self) -> dict[str, Image]:
         return {image.name: image for image in self.images}
+
+
+def turns_of(dataset: Dataset) -> dict[str, int]:
+    """By how many degrees images are turned while features are found, by name; empty if not."""
+    return {image.name: image.turn for image in dataset.images if image.turn is not None}
+
+
+def with_turns(dataset: Dataset, turns: Mapping[str, int]) -> Dataset:
+    """The dataset with images that are turned while features are found in them."""
+    images = [replace(image, turn=turns.get(image.name)) for image in dataset.images]
+    return replace(dataset, images=images)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from aerocues.datasets.dataset import Dataset
+from aerocues.datasets.dataset import Dataset, turns_of
 from aerocues.errors import MethodUnavailableError
 from aerocues.evaluation.plan import Plan
 from aerocues.evaluation.unit import Context
@@ -63,6 +63,7 @@ def run_facts(
             "images": len(context.dataset.images),
             "pairs": len(context.dataset.pairs),
             "settings": dict(context.dataset.settings),
+            "turned": turns_of(context.dataset),
             "source": asdict(context.dataset.source) if context.dataset.source else None,
         },
         "preset": context.preset,

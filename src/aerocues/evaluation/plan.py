@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
-from aerocues.datasets.dataset import Pair
+from aerocues.datasets.dataset import Dataset, Pair
 from aerocues.evaluation.cost import costly_descriptors, estimate_pair_seconds
 from aerocues.evaluation.planned_rows import PlannedRow
 from aerocues.evaluation.unit import Context, PairWork, Unit
@@ -54,6 +54,11 @@ class _Keys:
     images: Mapping[str, str]
     views: Mapping[str, str]
 
+    def seen(self, dataset: Dataset, name: str) -> object:
+        """The part that an image decides: its content, and how it is turned."""
+        turn = dataset.image(name).turn
+        return [self.images[name], turn] if turn else self.images[name]
+
     def truth(self, pair: Pair) -> object:
         """The part of the key of a pair that its ground truth decides; None without truth."""
         if pair.homography is not None:
@@ -71,7 +76,7 @@ def _row_key(
             context.settings_key,
             context.dataset.geometry,
             method_key,
-            [keys.images[pair.image_1], keys.images[pair.image_2]],
+            [keys.seen(context.dataset, name) for name in (pair.image_1, pair.image_2)],
             keys.truth(pair),
         ]
     )

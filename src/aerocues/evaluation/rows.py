@@ -29,6 +29,8 @@ def begin_row(context: Context, pair: Pair, combination: Combination, key: str) 
         norm=combination.norm,
         matcher=combination.matcher,
         preset=context.preset,
+        turned_1=context.dataset.image(pair.image_1).turn,
+        turned_2=context.dataset.image(pair.image_2).turn,
         parameters=json.dumps(context.methods.parameters(combination), sort_keys=True),
         max_keypoints=context.protocol.limit.count,
         keypoint_choice="spread" if context.protocol.limit.spread else "strongest",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
 
@@ -109,11 +109,15 @@ class Features:
     image_size : tuple of int, optional
         Width and height in pixels of the image in which `keypoints` lie. Matchers are always told;
         what extractors and descriptors say of it is not used.
+    turn : int
+        Degrees counterclockwise by which the image was turned when they were found. `keypoints`
+        are turned back; matchers are given those of the turned image, with its size.
     """
 
     keypoints: Keypoints
     descriptors: DescriptorArray
     image_size: tuple[int, int] | None = None
+    turn: int = 0
 
     def __post_init__(self) -> None:
         if self.descriptors.ndim != 2 or len(self.descriptors) != len(self.keypoints):
@@ -131,7 +135,9 @@ class Features:
 
     def take(self, which: NDArray[np.bool_] | NDArray[np.integer[Any]]) -> Features:
         """The features selected by a mask or by indices, in that order."""
-        return Features(self.keypoints.take(which), self.descriptors[which], self.image_size)
+        return replace(
+            self, keypoints=self.keypoints.take(which), descriptors=self.descriptors[which]
+        )
 
 
 def finite_features(keypoints: Keypoints, descriptors: DescriptorArray) -> Features:

@@ -98,7 +98,7 @@ class FeatureFolder:
             return None
         descriptors: Any = found["descriptors"]
         width, height = found[IMAGE_SIZE].tolist()
-        features = Features(keypoints_of(found), descriptors, (width, height))
+        features = Features(keypoints_of(found), descriptors, (width, height), image.turn or 0)
         return Described(features, _read_time(found[TIME]))
 
     def keep_described(
@@ -115,7 +115,7 @@ class FeatureFolder:
         methods = [dict(self._methods.detectors[detector].parameters)]
         if descriptor:
             methods.append(dict(self._methods.descriptor_on(descriptor, detector).parameters))
-        key = content_hash([self._common, image.source.content_key(), methods])
+        key = content_hash([self._common, image.features_key(), methods])
         return self._folder / "-".join(filter(None, (detector, descriptor))) / f"{key}.npz"
 
     def _write(self, file: Path, arrays: Arrays) -> None:

@@ -138,7 +138,8 @@ class FeatureSource:
         if not len(found.keypoints):
             row = self._methods.descriptors[combination.descriptor]
             nothing = np.empty((0, max(row.columns, 1)), row.dtype)
-            return TimedFeatures(Features(found.keypoints, nothing, found.size), seconds)
+            nowhere = Features(found.keypoints, nothing, found.size, found.turn)
+            return TimedFeatures(nowhere, seconds)
         described = self.described(found, combination)
         return TimedFeatures(described.features, seconds + described.time.cpu)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, TypeVar
 
 import cv2
@@ -16,6 +17,7 @@ from aerocues.methods.arrays import Features, Float32Array, Keypoints
 from aerocues.methods.making import DescriptorStage, DetectorStage
 from aerocues.methods.strongest import ALL_KEYPOINTS, KeypointLimit
 from aerocues.pipeline.clock import Clock, StageTime
+from aerocues.pipeline.turning import turned_keypoints, turned_pixels, turned_size
 
 Result = TypeVar("Result")
 WARM_UP_SIZE = 192
@@ -97,7 +99,11 @@ class Described:
 
 @dataclass
 class ImageFeatures:
-    """One image under one detector: pixels, keypoints and what descriptors made of them."""
+    """One image under one detector: pixels, keypoints and what descriptors made of them.
+
+    Where the image is turned, ``keypoints`` are those of the turned one; what is described is
+    turned back.
+    """
 
     image: Image
     pixels: Pixels
@@ -105,6 +111,21 @@ class ImageFeatures:
     detect_time: StageTime
     described: dict[str, Described | Failure] = field(default_factory=dict)
     prepared: dict[type, Any] = field(default_factory=dict)
+
+    @property
+    def turn(self) -> int:
+        """Degrees counterclockwise by which the image is turned."""
+        return self.image.turn or 0
+
+    @cached_property
+    def seen(self) -> NDArray[np.uint8]:
+        """What methods see: the image, turned."""
+        return turned_pixels(self.pixels, self.turn).bgr
+
+    @property
+    def positions(self) -> Keypoints:
+        """The keypoints in the image as it is."""
+        return turned_keypoints(self.keypoints, turned_size(self.size, self.turn), -self.turn)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -160,13 +181,14 @@ class FeatureExtractor:
     def detect(self, image: Image, name: str, detector: DetectorStage) -> ImageFeatures:
         """Decode an image and detect its keypoints; StageError where that fails."""
         pixels = self._pixels(image)
+        seen = turned_pixels(pixels, image.turn or 0)
         what = f"{name} detecting in {image.name}"
         if ("detector", name) not in self._warm:
             self._warm.add(("detector", name))
-            warm_up(lambda: detector.call(centre(pixels.bgr)))
-        raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(pixels.bgr)))
+            warm_up(lambda: detector.call(centre(seen.bgr)))
+        raw, time = run_stage(what, lambda: self._clock.time(lambda: detector.call(seen.bgr)))
         found = run_stage(what, lambda: detector.read(raw))
-        kept = self._limit.keep(on_valid_pixels(found, pixels.valid), self._seed)
+        kept = self._limit.keep(on_valid_pixels(found, seen.valid), self._seed)
         return ImageFeatures(image, pixels, kept, time)
 
     def read(self, image: Image, keypoints: Keypoints, detect_time: StageTime) -> ImageFeatures:
@@ -180,7 +202,7 @@ class FeatureExtractor:
         self, image: ImageFeatures, name: str, what: str, descriptor: DescriptorStage
     ) -> Described:
         """Describe the keypoints of an image; StageError where that fails."""
-        kind, bgr = type(descriptor), image.pixels.bgr
+        kind, bgr = type(descriptor), image.seen
         if kind not in image.prepared:
             image.prepared[kind] = run_stage(what, lambda: descriptor.prepare(image.keypoints, bgr))
         prepared = image.prepared[kind]
@@ -192,7 +214,22 @@ class FeatureExtractor:
             what, lambda: self._clock.time(lambda: descriptor.call(bgr, prepared))
         )
         found = run_stage(what, lambda: descriptor.read(raw))
-        return Described(replace(found, image_size=image.size), time)
+        return Described(turned_back(found, image.size, image.turn), time)
+
+
+def turned_back(features: Features, size: tuple[int, int], turn: int) -> Features:
+    """Features of a turned image in the image as it is, whose size is given."""
+    keypoints = turned_keypoints(features.keypoints, turned_size(size, turn), -turn)
+    return replace(features, keypoints=keypoints, image_size=size, turn=turn)
+
+
+def as_seen(features: Features) -> Features:
+    """The other way round: features where methods saw them."""
+    if not features.turn or features.image_size is None:
+        return features
+    size, turn = features.image_size, features.turn
+    keypoints = turned_keypoints(features.keypoints, size, turn)
+    return replace(features, keypoints=keypoints, image_size=turned_size(size, turn), turn=0)
 
 
 def centre(bgr: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -123,7 +123,7 @@ def survey_flight(
     """
     if not leaves_pairs_open(dataset):
         return None
-    survey = _survey(dataset, seed, progress, folder, keep=keep)
+    survey = surveyed(dataset, seed, progress, folder, keep=keep)
     chosen = representatives(survey, enough_pairs(len(dataset.images), most), seed)
     if not chosen.pairs:
         return None
@@ -137,7 +137,7 @@ def survey_flight(
     return SurveyedFlight(replace(dataset, pairs=pairs, settings=settings), survey, chosen)
 
 
-def _survey(
+def surveyed(
     dataset: Dataset,
     seed: int,
     progress: Callable[[int, int], None],
@@ -145,6 +145,7 @@ def _survey(
     *,
     keep: bool,
 ) -> Survey:
+    """The survey of all images of a dataset; parameters as in `survey_flight`."""
     if folder is None:
         return Surveyor(dataset.images, seed).survey(progress)
     key = survey_key(dataset.images, seed)

@@ -14,7 +14,7 @@ from aerocues.methods.registry import Methods
 from aerocues.pipeline.brute_force_time import SampledBruteForce
 from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.feature_source import Announce, silent
-from aerocues.pipeline.features import ImageFeatures, centre, run_stage, warm_up
+from aerocues.pipeline.features import ImageFeatures, as_seen, centre, run_stage, warm_up
 from aerocues.pipeline.guiding import guided_matches
 from aerocues.pipeline.protocol import MeasurementProtocol
 from aerocues.pipeline.verification import IndexArray, Verdict, Verifier
@@ -82,6 +82,7 @@ class PairStages:
         """
         self._announce(stage_call("match", combination, images, pair))
         what = f"{combination} matching {images}"
+        features = as_seen(features[0]), as_seen(features[1])
         matcher = self._matcher(combination, features, what)
         if combination.matcher == BRUTE_FORCE and self._protocol.timing == "estimated":
             sampled = SampledBruteForce(matcher, combination.norm, self._clock)
@@ -114,7 +115,7 @@ class PairStages:
         """
         self._announce(stage_call("match", combination, names, pair))
         what = f"{combination.matcher} matching {names}"
-        first, second = (image.pixels.bgr for image in images)
+        first, second = (image.seen for image in images)
         matcher = self._pair_matcher(combination.matcher, (first, second), what)
         if combination.guided:
             return run_stage(what, lambda: self._guided(matcher, images))
@@ -169,11 +170,11 @@ class PairStages:
         one, other = images
 
         def call() -> Matches:
-            found = matcher.read(matcher.call(one.pixels.bgr, other.pixels.bgr))
+            found = matcher.read(matcher.call(one.seen, other.seen))
             return guided_matches(found, one.keypoints, other.keypoints)
 
         matches, time = self._clock.time(call)
-        first, second = (undescribed(image.keypoints, image.size) for image in images)
+        first, second = (undescribed(image.positions, image.size) for image in images)
         return MatchedPair((first, second), matches), time
 
     def _pair_matcher(

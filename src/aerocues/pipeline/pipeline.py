@@ -202,7 +202,7 @@ def decoded(*images: ImageLike) -> list[Image]:
 
 def _decoded(image: FileSource | NDArray[np.uint8] | Image) -> Image:
     if isinstance(image, Image):
-        return Image(image.name, DecodedSource(image.read()))
+        return Image(image.name, DecodedSource(image.read()), turn=image.turn)
     if isinstance(image, FileSource):
         return Image(image.path.name, DecodedSource(image.read()))
     return Image("the image", DecodedSource(pixels_of(image)))

@@ -58,8 +58,8 @@ class SurveyedPair:
         Matches that one geometry explains.
     overlap : float
         Share of image 1 that image 2 shows, 0 to 1, by a homography.
-    turn : float
-        Degrees, 0 to 180, by which image 2 is turned against image 1.
+    rotation : float
+        Degrees clockwise, -180 to 180, by which image 2 is turned against image 1.
     scale : float
         Size of things in image 2 over their size in image 1.
     """
@@ -68,8 +68,13 @@ class SurveyedPair:
     image_2: int
     inliers: int
     overlap: float
-    turn: float
+    rotation: float
     scale: float
+
+    @property
+    def turn(self) -> float:
+        """Degrees, 0 to 180, by which the images are turned against each other."""
+        return abs(self.rotation)
 
     @property
     def kind(self) -> PairClass:
@@ -199,7 +204,7 @@ class Surveyor:
 def view_change(
     homography: NDArray[np.float64], size_1: tuple[int, int], size_2: tuple[int, int]
 ) -> tuple[float, float, float] | None:
-    """Overlap, turn in degrees and scale of two images that a homography relates.
+    """Overlap, clockwise rotation in degrees and scale of two images that a homography relates.
 
     Parameters
     ----------
@@ -231,5 +236,5 @@ def view_change(
     area = float(np.linalg.det(slope))
     if area <= 0:
         return None
-    turn = abs(math.degrees(math.atan2(slope[1, 0] - slope[0, 1], slope[0, 0] + slope[1, 1])))
-    return float(inside.mean()), turn, math.sqrt(area)
+    rotation = math.degrees(math.atan2(slope[1, 0] - slope[0, 1], slope[0, 0] + slope[1, 1]))
+    return float(inside.mean()), rotation, math.sqrt(area)

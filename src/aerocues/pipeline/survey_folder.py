@@ -17,7 +17,7 @@ from aerocues.results.hashing import content_hash
 from aerocues.results.whole_files import json_content, write_whole
 
 # Raised whenever the same images would give another survey.
-SURVEY_VERSION = 1
+SURVEY_VERSION = 2
 
 
 def survey_key(images: Sequence[Image], seed: int) -> str:

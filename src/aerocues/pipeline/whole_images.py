@@ -10,6 +10,7 @@ from aerocues.methods.arrays import Features, Float32Array, Keypoints, Matches
 from aerocues.methods.pair_matching import PointMatches
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.features import ImageFeatures, are_valid
+from aerocues.pipeline.turning import turned_points, turned_size
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,17 +47,24 @@ def matched_pair(
     seed : int
         Decides among equal scores.
     """
+    first, second = images
+    points = _turned_back(found.points_1, first), _turned_back(found.points_2, second)
+    found = PointMatches(points[0], points[1], found.scores)
     for image in images:
-        points = found.points_1 if image is images[0] else found.points_2
+        own = found.points_1 if image is first else found.points_2
         if image.pixels.valid is not None:
-            found = found.take(are_valid(points, image.pixels.valid))
+            found = found.take(are_valid(own, image.pixels.valid))
     found = found.take(limit.kept(_keypoints(found.points_1, found), seed))
-    first, second = (
+    one, other = (
         undescribed(_keypoints(points, found), image.size)
         for points, image in zip((found.points_1, found.points_2), images, strict=True)
     )
     indices = np.repeat(np.arange(len(found), dtype=np.int32)[:, None], 2, axis=1)
-    return MatchedPair((first, second), Matches(indices, -found.scores))
+    return MatchedPair((one, other), Matches(indices, -found.scores))
+
+
+def _turned_back(points: Float32Array, image: ImageFeatures) -> Float32Array:
+    return turned_points(points, turned_size(image.size, image.turn), -image.turn)
 
 
 def undescribed(keypoints: Keypoints, image_size: tuple[int, int]) -> Features:

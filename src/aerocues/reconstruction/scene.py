@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
-from aerocues.datasets.dataset import Dataset
+from aerocues.datasets.dataset import Dataset, turns_of
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods
 from aerocues.methods.strongest import KeypointLimit
@@ -129,6 +129,8 @@ class Scene:
     def parameters(self, combination: Combination) -> dict[str, object]:
         """Everything that decides what the methods of a combination compute in a scene."""
         parameters = self.methods.parameters(combination)
+        if turns := turns_of(self.dataset):
+            parameters["turned"] = {name: turn for name, turn in turns.items() if turn}
         merged = combination.of_pairs and not combination.guided
         return {**parameters, "merged_within": CELL} if merged else parameters
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from aerocues.datasets.catalog import open_dataset
-from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.datasets.dataset import Dataset, Pair, with_turns
 from aerocues.errors import DatasetError
 from aerocues.evaluation.unit import Context
 from aerocues.methods.plugins import installed_methods
@@ -48,7 +48,9 @@ def context_of(found: ReportEntry, moved: Sequence[str] = ()) -> Context:
         raise DatasetError(f"run.json does not say how they were measured ({error})") from error
     references = found.results.folder / REFERENCES
     return Context(
-        dataset=_with_pairs(_dataset(found, measured, moved), found.pairs()),
+        dataset=_with_pairs(
+            with_turns(_dataset(found, measured, moved), measured.get("turned", {})), found.pairs()
+        ),
         methods=protocol.limit.limited(installed_methods().with_preset(preset)),
         preset=preset.name,
         protocol=protocol,

@@ -207,6 +207,15 @@ GROUND_TRUTH: tuple[Column, ...] = (
 
 PROVENANCE: tuple[Column, ...] = (
     _text("preset", "preset of parameters and protocol"),
+    *(
+        Column(
+            f"turned_{side}",
+            "integer",
+            "degrees",
+            f"counterclockwise turn of image {side} while features were found (--upright)",
+        )
+        for side in (1, 2)
+    ),
     _text("parameters", "parameters of detector, descriptor and matcher, as JSON"),
     _count("max_keypoints", "maximum number of keypoints per image; 0: all"),
     _text("keypoint_choice", "which keypoints were kept: strongest, or spread over the image"),

@@ -1,0 +1,95 @@
+"""A common heading: by how many quarters images are turned before features are found in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aerocues.datasets.catalog import DatasetLike, as_dataset
+from aerocues.datasets.dataset import Dataset, with_turns
+from aerocues.pipeline.flight_pairs import surveyed
+from aerocues.pipeline.survey import Survey
+
+
+def upright(
+    dataset: DatasetLike,
+    *,
+    seed: int = 0,
+    folder: Path | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Dataset:
+    """Images that are turned to a common heading while features are found in them.
+
+    Many learned methods, and some classic ones, match nothing in images that are turned against
+    each other, as those of neighbouring strips of a flight are. A quick match finds how images are
+    turned; each is then turned by a multiple of 90 degrees, which is exact, and positions are
+    turned back. Up to 45 degrees remain. Images that no pair joins keep their heading.
+
+    Parameters
+    ----------
+    dataset : Dataset, str, path or sequence of paths
+        See `open_dataset`.
+    seed : int
+    folder : path, optional
+        Where surveys are kept; one that is there is not made again.
+    progress : callable
+        Called with how many images and pairs of how many were looked at.
+
+    Returns
+    -------
+    Dataset
+        For `run`, `recommend` and `reconstruct`; rows tell how their images were turned.
+
+    Raises
+    ------
+    AerocuesError
+        If the images cannot be opened.
+    """
+    opened = as_dataset(dataset)
+    turns = turns_to_common_heading(surveyed(opened, seed, progress, folder, keep=True))
+    count = sum(turn != 0 for turn in turns.values())
+    told = f"{count} of {len(turns)} images are turned to a common heading"
+    return replace(with_turns(opened, turns), notes=(*opened.notes, told))
+
+
+def turns_to_common_heading(survey: Survey) -> dict[str, int]:
+    """By how many degrees counterclockwise each image is turned: 0, 90, 180 or 270, by name.
+
+    Most images of each group that pairs join stay as they are.
+    """
+    headings, groups = _headings(survey)
+    turns = np.zeros(len(survey.images), np.int64)
+    for group in np.unique(groups):
+        own = groups == group
+        turns[own] = _quarters(headings[own]) * 90
+    return dict(zip(survey.images, turns.tolist(), strict=True))
+
+
+def _headings(survey: Survey) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Clockwise rotation of each image against the first of its group, degrees, and its group.
+
+    Rotations are added up along the surest pairs.
+    """
+    headings = np.zeros(len(survey.images))
+    groups = np.arange(len(survey.images))
+    for pair in sorted(survey.pairs, key=lambda pair: -pair.inliers):
+        first, second = groups[[pair.image_1, pair.image_2]]
+        if first == second:
+            continue
+        moved = groups == second
+        headings[moved] += headings[pair.image_1] + pair.rotation - headings[pair.image_2]
+        groups[moved] = first
+    return headings, groups
+
+
+def _quarters(headings: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Quarters, 0 to 3, by which images are turned back, so that most stay as they are."""
+    # Where headings lie between the quarters, all of them do: what they have in common counts.
+    common = np.angle(np.exp(4j * np.radians(headings)).sum()) / 4
+    quarters = np.round((headings - np.degrees(common)) / 90).astype(np.int64) % 4
+    most = int(np.bincount(quarters, minlength=4).argmax())
+    return np.asarray((quarters - most) % 4, np.int64)
