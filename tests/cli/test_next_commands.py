@@ -25,3 +25,12 @@ def test_where_colmaps_default_wins_the_next_command_makes_its_model(photos: Pat
     lost = replace(recommended, final=final(model(SIFT), model(BASELINE, points_in_3_images=9)))
     assert f" --combinations {SIFT} " in next_commands(lost, same)[0]
     assert " --combinations A-X-HAM-BF " in next_commands(recommended, same)[0]
+
+
+def test_images_stay_upright_in_the_next_commands(photos: Path) -> None:
+    same = AsMeasured(
+        "photos", None, None, None, None, "none", 900, "default", 8000, 0, upright=True
+    )
+    model_command, run_command, *_ = next_commands(found(photos, [0.7, 0.3]), same)
+    assert model_command.startswith("aerocues reconstruct photos --max-width 900 --upright -o")
+    assert "--upright" in run_command

@@ -12,10 +12,12 @@ import pytest
 import aerocues
 from aerocues.datasets.dataset import Dataset, Image, Pixels, with_turns
 from aerocues.datasets.decoded import DecodedSource
+from aerocues.datasets.decoding import FileSource
 from aerocues.methods import plugins
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import opencv_methods
+from aerocues.modelling.reconstruct import open_as_measured
 from aerocues.pipeline.clock import Clock
 from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import FeatureSource
@@ -107,6 +109,12 @@ def as_flown(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     return write_dataset(tmp_path_factory.mktemp("flown"), views)
 
 
+def as_flown_folder(dataset: Dataset) -> Path:
+    source = dataset.images[0].source
+    assert isinstance(source, FileSource)
+    return source.path.parent
+
+
 def test_upright_methods_match_images_that_are_turned_back(
     as_flown: Dataset, tmp_path: Path
 ) -> None:
@@ -121,6 +129,8 @@ def test_upright_methods_match_images_that_are_turned_back(
         right[name] = [row["inliers"] for row in rows]
         turns = [(row["turned_1"], row["turned_2"]) for row in rows]
         assert turns == ([(None, None)] * 2 if name == "plain" else [(0, 180), (180, 0)])
+    reopened = open_as_measured(as_flown_folder(as_flown), results)
+    assert [image.turn for image in reopened.images] == [0, 180, 0]
     assert min(right["upright"]) > 100
     assert max(right["plain"]) < 0.3 * min(right["upright"])
 

@@ -34,6 +34,8 @@ class AsMeasured:
     seed : int
     plugins : tuple of str
         Methods of the user's own, as ``module:Class``.
+    upright : bool
+        Whether images are turned to a common heading.
     """
 
     images: str
@@ -47,6 +49,7 @@ class AsMeasured:
     max_keypoints: int
     seed: int
     plugins: tuple[str, ...] = ()
+    upright: bool = False
 
     def words(self, max_keypoints: int) -> list[str]:
         """Images and options that differ from the defaults of `run` and `reconstruct`.
@@ -70,6 +73,7 @@ class AsMeasured:
         words = [self.images]
         for name, value, default in options:
             words += [name, f"{value}"] if value != default else []
+        words += ["--upright"] if self.upright else []
         for plugin in self.plugins:
             words += ["--plugin", plugin]
         return words

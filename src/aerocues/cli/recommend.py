@@ -194,7 +194,7 @@ def recommend(
             )
         _print(found, top, explain=explain)
         opened = (dataset, pairs, subset, band, every, equalize, _shrunk(images, max_width))
-        same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()))
+        same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()), upright)
         _print_next(found, same)
         if report is not None:
             _write_report(found, report)

@@ -204,6 +204,7 @@ def reconstruct(
             max_keypoints=max_keypoints,
             seed=seed,
             plugins=tuple(plugin or ()),
+            upright=upright,
         )
         succeeded = _print(models, asked, results)
     if not succeeded:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
@@ -23,6 +24,7 @@ from aerocues.cli.options import (
 from aerocues.defaults import STAGE_TIMEOUT
 
 if TYPE_CHECKING:
+    from aerocues.datasets.dataset import Dataset
     from aerocues.exports.use import Used
 
 NAME_PARTS = 4
@@ -91,6 +93,7 @@ def use(
     ] = None,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
+    upright: UprightOption = False,
     refine_keypoints: RefineKeypointsOption = None,
     features_width: FeaturesWidthOption = None,
     features: FeaturesOption = None,
@@ -110,12 +113,24 @@ def use(
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.live import display
+    from aerocues.modelling.reconstruct import open_as_measured
 
     if results is not None and dataset is None and combination and not _is_name(combination):
         combination, dataset = None, combination
     with interruptible(), display() as tally:
+        images: str | Dataset | None = dataset
+        if upright and dataset is not None:
+            scene = open_as_measured(
+                dataset,
+                None if results is None else aerocues.Results(results),
+                pairs=pairs,
+                max_width=max_width,
+                equalize=equalize,
+                subset=subset,
+            )
+            images = turned(scene, seed or 0, None, asked=True)
         used = aerocues.use(
-            dataset,
+            images,
             combination,
             output,
             target=target.value,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from aerocues.arguments import check_whole
 from aerocues.datasets.catalog import DatasetLike
-from aerocues.datasets.dataset import Dataset
+from aerocues.datasets.dataset import Dataset, with_turns
 from aerocues.defaults import FLIGHT_KEYPOINTS, RECONSTRUCTED, STAGE_TIMEOUT
 from aerocues.errors import ArgumentError, ReconstructionError
 from aerocues.methods.combination import Combination
@@ -220,14 +220,16 @@ def open_as_measured(
         whatever the results were measured on; images are matched with their neighbours by GPS, or
         where those are not known, with all others.
     results : Results, optional
+        Images that were turned to a common heading there are turned here, too.
     """
     measured = settings_of_results(results)
+    turns = {} if results is None else (results.settings.get("dataset") or {}).get("turned", {})
     width = measured.get("max_width", "full")
     if band is None and "band" in measured:
         band = int(measured["band"])
     if max_width is None and width != "full":
         max_width = int(width)
-    return open_scene(
+    scene = open_scene(
         dataset,
         pairs=pairs,
         max_width=max_width,
@@ -237,6 +239,7 @@ def open_as_measured(
         band=band,
         every=every or measured.get("every"),
     )
+    return with_turns(scene, turns) if turns else scene
 
 
 def best_combinations(results: Results, dataset: str, top: int) -> list[str]:
