@@ -212,7 +212,7 @@ PROVENANCE: tuple[Column, ...] = (
             f"turned_{side}",
             "integer",
             "degrees",
-            f"counterclockwise turn of image {side} while features were found (--upright)",
+            f"counterclockwise turn of image {side} while features were found, where asked for",
         )
         for side in (1, 2)
     ),
