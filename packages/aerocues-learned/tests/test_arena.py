@@ -1,0 +1,72 @@
+"""Learned methods in aerocues: measured as the others are, the same every time."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import polars as pl
+import pytest
+from numpy.typing import NDArray
+
+import aerocues
+
+LIGHTERGLUE = "XFEAT-XFEAT-L2-LIGHTERGLUE"
+COMBINATIONS = f"XFEAT-XFEAT-L2-BF,{LIGHTERGLUE},ALIKED_T16-ALIKED_T16-L2-BF"
+OF_THE_CLOCK = ("seconds", "cpu", "wall", "memory", "time", "measured", "run")
+
+
+@pytest.fixture(scope="module")
+def photographs(
+    images: tuple[NDArray[np.uint8], NDArray[np.uint8]], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """The two images as files."""
+    folder = tmp_path_factory.mktemp("photographs")
+    for number, image in enumerate(images, 1):
+        assert cv2.imwrite(str(folder / f"{number}.png"), image)
+    return folder
+
+
+def measured(photographs: Path, output: Path, workers: int) -> pl.DataFrame:
+    """The rows of a run, without what depends on the clock."""
+    results = aerocues.run(
+        photographs, COMBINATIONS, output, timing="shared", workers=workers, max_keypoints=500
+    )
+    rows = results.table().sort("detector", "matcher")
+    return rows.drop([name for name in rows.columns if any(part in name for part in OF_THE_CLOCK)])
+
+
+@pytest.mark.slow
+def test_rows_are_the_same_again_and_with_two_workers(photographs: Path, tmp_path: Path) -> None:
+    alone = measured(photographs, tmp_path / "alone", 1)
+    beside = measured(photographs, tmp_path / "beside", 2)
+    assert set(alone["status"]) == {"ok"}
+    assert alone.equals(beside)
+
+
+def test_learned_features_link_two_views(
+    images: tuple[NDArray[np.uint8], NDArray[np.uint8]],
+) -> None:
+    matched = aerocues.match(images[0], images[1], LIGHTERGLUE, max_keypoints=500)
+    assert matched.inliers.sum() > 100
+
+
+def test_a_network_is_loaded_only_when_it_is_used() -> None:
+    code = "import aerocues_learned.extractors, aerocues_learned.matchers, sys; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {"onnxruntime", "torch", "polars", "pycolmap"} & set(run.stdout.split()) == set()
+
+
+def test_torch_is_not_needed() -> None:
+    assert importlib.util.find_spec("torch") is None
+
+
+def test_the_command_line_knows_them() -> None:
+    asked = ["-m", "aerocues", "methods", "why", LIGHTERGLUE, "ALIKED_N16ROT-ALIKED_N16ROT-L2-BF"]
+    run = subprocess.run([sys.executable, *asked], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.count(" runs") == 2
