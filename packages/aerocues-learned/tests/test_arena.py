@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,10 @@ import pytest
 from numpy.typing import NDArray
 
 import aerocues
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.selection import select
 
+REPOSITORY = Path(__file__).resolve().parents[3]
 LIGHTERGLUE = "XFEAT-XFEAT-L2-LIGHTERGLUE"
 COMBINATIONS = f"XFEAT-XFEAT-L2-BF,{LIGHTERGLUE},ALIKED_T16-ALIKED_T16-L2-BF"
 OF_THE_CLOCK = ("seconds", "cpu", "wall", "memory", "time", "measured", "run")
@@ -70,3 +74,11 @@ def test_the_command_line_knows_them() -> None:
     run = subprocess.run([sys.executable, *asked], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     assert run.stdout.count(" runs") == 2
+
+
+def test_combinations_of_the_guide_exist() -> None:
+    page = (REPOSITORY / "docs" / "learned.md").read_text(encoding="utf-8")
+    patterns = re.findall(r"--combinations '([^']+)'", page)
+    assert patterns
+    for each in patterns:
+        assert select(installed_methods(), each)
