@@ -71,7 +71,7 @@ NO_TIME = StageTime(0.0, 0.0)
 
 
 class Clock:
-    """Times calls in the calling thread, OpenCV's random numbers seeded before each.
+    """Times calls, with all threads that they start, OpenCV's random numbers seeded before each.
 
     An exclusive clock calls again, for the median of several calls; calls that were disturbed are
     made up for. It measures the rise of the resident set during each first call, too, where the

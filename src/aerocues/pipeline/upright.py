@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.arguments import check_whole
 from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset, with_turns
 from aerocues.pipeline.flight_pairs import surveyed
@@ -19,7 +20,7 @@ def upright(
     dataset: DatasetLike,
     *,
     seed: int = 0,
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Dataset:
     """Images that are turned to a common heading while features are found in them.
@@ -34,7 +35,7 @@ def upright(
     dataset : Dataset, str, path or sequence of paths
         See `open_dataset`.
     seed : int
-    folder : path, optional
+    folder : str or path, optional
         Where surveys are kept; one that is there is not made again.
     progress : callable
         Called with how many images and pairs of how many were looked at.
@@ -46,11 +47,15 @@ def upright(
 
     Raises
     ------
+    ArgumentError
+        If `seed` is not a whole number from 0 on.
     AerocuesError
         If the images cannot be opened.
     """
+    check_whole("seed", seed, 0)
     opened = as_dataset(dataset)
-    turns = turns_to_common_heading(surveyed(opened, seed, progress, folder, keep=True))
+    place = None if folder is None else Path(folder)
+    turns = turns_to_common_heading(surveyed(opened, seed, progress, place, keep=True))
     count = sum(turn != 0 for turn in turns.values())
     told = f"{count} of {len(turns)} images are turned to a common heading"
     return replace(with_turns(opened, turns), notes=(*opened.notes, told))
