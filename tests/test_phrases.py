@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aerocues.phrases import printable
+from aerocues.phrases import number_text, printable
 
 
 @pytest.mark.parametrize(
@@ -32,3 +32,11 @@ def test_any_name_of_a_file_can_be_stored_and_printed(name: bytes) -> None:
     text.encode()
     assert "\x1b" not in text
     assert printable(text) == text
+
+
+def test_a_number_that_is_not_known_is_a_dash() -> None:
+    assert [number_text(value, 2) for value in (0.125, -3.0, float("nan"))] == [
+        "0.12",
+        "-3.00",
+        "-",
+    ]

@@ -16,6 +16,11 @@ def count(number: int, noun: str, plural: str | None = None) -> str:
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
+def number_text(value: float, digits: int) -> str:
+    """A number with so many digits after the point, or ``-`` where it is not known."""
+    return "-" if value != value else f"{value:.{digits}f}"
+
+
 def likelihood(probability: float) -> str:
     """``61%``; never 0% nor 100%, as what comes from draws is never certain."""
     rounded = f"{probability:.0%}"

@@ -79,6 +79,18 @@ def test_what_a_tool_needs_is_asked_for_first(
     assert (answer.code, "image 0.png" in answer.err) == (2, True)
 
 
+def test_a_program_of_turned_images_is_refused(finished: Path, tmp_path: Path, call: Call) -> None:
+    turned = tmp_path / "turned"
+    shutil.copytree(finished, turned)
+    settings = json.loads((turned / "run.json").read_text())
+    settings["dataset"]["turned"] = {"0.png": 180}
+    (turned / "run.json").write_text(json.dumps(settings))
+    answer = call("use", "ORB-ORB-HAM-BF", "--from", turned, "--as", "python")
+    assert (answer.code, "common heading" in answer.err) == (2, True)
+    answer = call("use", "ORB-ORB-HAM-BF", "--upright", "--as", "python")
+    assert (answer.code, "--upright" in answer.err) == (2, True)
+
+
 @pytest.mark.slow
 def test_files_are_written_and_can_be_written_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

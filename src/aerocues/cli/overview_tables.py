@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from aerocues.cli.console import plain_table, print_table
 from aerocues.cli.validation_tables import LISTED, numbered_matrix, print_title
-from aerocues.phrases import count
+from aerocues.phrases import count, number_text
 from aerocues.scoring.leaders import SHARE, TOP
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def print_overview(console: Console, found: Overview, top: int) -> None:
     print_table(console, _best(found))
     console.print(
         f"{found.evaluations:,} scores of combinations on {sets}; mean rank correlation of two "
-        f"datasets {found.mean_correlation:.3f}"
+        f"datasets {number_text(found.mean_correlation, 3)}"
     )
     print_title(console, f"\nthe first {TOP} of a dataset (row) that are there on another, too")
     print_table(console, counts_matrix(found))
@@ -113,7 +113,7 @@ def print_machines(console: Console, runs: Runs, found: PlatformScores, top: int
     print_title(console, "\nscores of each machine, normalised by itself: second minus first")
     console.print(
         f"{count(len(found.combinations), 'combination')} on {runs.first.machine} (first) and "
-        f"{runs.second.machine} (second): rank correlation {found.spearman:.4f};\n"
+        f"{runs.second.machine} (second): rank correlation {number_text(found.spearman, 4)};\n"
         f"{found.kept} of the first {TOP} stay among them; largest difference {found.largest:.4f}",
         markup=False,
     )

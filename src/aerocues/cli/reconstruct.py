@@ -163,7 +163,7 @@ def reconstruct(
             band=band,
             every=every,
         )
-        scene = turned(scene, seed, results, asked=upright)
+        scene = turned(scene, seed, None, asked=upright)
         tell_images(scene)
         with display_and_page(results or output, live=live) as (_, progress):
             models = aerocues.reconstruct(

@@ -22,6 +22,7 @@ from aerocues.cli.options import (
     SubsetOption,
 )
 from aerocues.defaults import STAGE_TIMEOUT
+from aerocues.errors import ArgumentError
 
 if TYPE_CHECKING:
     from aerocues.datasets.dataset import Dataset
@@ -119,6 +120,8 @@ def use(
         combination, dataset = None, combination
     with interruptible(), display() as tally:
         images: str | Dataset | None = dataset
+        if upright and dataset is None:
+            raise ArgumentError("there are no images to turn; give them, or leave --upright out")
         if upright and dataset is not None:
             scene = open_as_measured(
                 dataset,
@@ -154,7 +157,11 @@ def use(
 
 def _is_name(word: str) -> bool:
     """Whether a word names a combination rather than images."""
-    return len(word.split("-")) == NAME_PARTS and not Path(word).exists()
+    from aerocues.methods.plugins import installed_methods
+
+    if Path(word).exists():
+        return False
+    return len(word.split("-")) == NAME_PARTS or word.upper() in installed_methods().pair_matchers
 
 
 def _print(used: Used) -> None:

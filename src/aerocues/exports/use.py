@@ -11,7 +11,7 @@ from typing import Any
 from aerocues.datasets.catalog import DatasetLike
 from aerocues.datasets.dataset import Dataset
 from aerocues.defaults import FLIGHT_KEYPOINTS, STAGE_TIMEOUT
-from aerocues.errors import ArgumentError
+from aerocues.errors import ArgumentError, SelectionError
 from aerocues.exports.files import write_files
 from aerocues.exports.recipe import Measured, recipe_of
 from aerocues.exports.targets import Target, target_named
@@ -154,7 +154,7 @@ def use(
     place = None if output is None else Path(output)
     if row.kind != "files":
         if dataset is not None:
-            raise ArgumentError(f"{row.title} need no images; leave `dataset` out")
+            raise ArgumentError(f"images are not needed for {row.title}; leave `dataset` out")
         return _text(row, name, settings, place, measured)
     if place is None:
         raise ArgumentError(f"the files of {row.name} need a folder; give one as `output`")
@@ -233,6 +233,7 @@ def _text(
 ) -> Used:
     """A program, or the nearest settings of a tool."""
     if row.kind == "program":
+        _refuse_turned(results)
         recipe = recipe_of(combination, settings)
         one, text = recipe.combination, str(row.load()(recipe))
     else:
@@ -241,6 +242,15 @@ def _text(
     if output is not None:
         write_whole({output: text.encode()})
     return Used(row.name, str(one), output, text)
+
+
+def _refuse_turned(results: Results | None) -> None:
+    turns = {} if results is None else results.settings.get("dataset", {}).get("turned", {})
+    if any(turns.values()):
+        raise SelectionError(
+            "these results were measured with images turned to a common heading, which a program "
+            "does not do; write files of the flight, such as `target='colmap'`, or measure without"
+        )
 
 
 def _ranked(results: Results | None) -> list[str] | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from aerocues.phrases import number_text
 from aerocues.report.comparison import comparison_of
 from aerocues.report.entry import ReportEntry
 from aerocues.report.score_figures import COLOURS, heat_map
@@ -79,7 +80,8 @@ def draw_platforms(entries: Sequence[ReportEntry]) -> Figure | None:
         axes.plot(scores["first_score"], scores["second_score"], "o", ms=2, color=COLOURS[0])
         axes.set_xlabel(f"CUES, {first.name}")
         axes.set_ylabel(f"CUES, {second.name}")
-        axes.set_title(f"rank correlation {found.spearman:.4f}; {found.kept} of the first 10 stay")
+        told = number_text(found.spearman, 4)
+        axes.set_title(f"rank correlation {told}; {found.kept} of the first 10 stay")
         axes.grid()
     return figure
 

@@ -1,4 +1,7 @@
-"""Words of the page and what they mean, as in the glossary of the guide."""
+"""Words of the page and what they mean, as in the glossary of the guide.
+
+Words with a second meaning on the page, such as the reference of clouds, are not among them.
+"""
 
 from __future__ import annotations
 
@@ -12,17 +15,11 @@ WORDS: Mapping[str, str] = {
     "coverage": "Share of the cells of a 16 x 16 grid on image 1 that hold a right match.",
     "CUES": "Composite Unsupervised Efficiency Score: weighted sum of the normalised criteria, "
     "with weights from the data.",
-    "final": "The second part of a recommendation: the leaders of the race build models, and the "
-    "best model decides.",
     "inlier": "A match that agrees with the geometry that was estimated from all matches of a "
     "pair.",
     "pareto front": "The combinations of which none is better in both of two criteria, such as "
     "speed and quality.",
     "precision": "Inliers / matches, the inlier ratio.",
-    "race": "The first part of a recommendation: cheap measurements first, then more of those "
-    "combinations that can still win.",
-    "reference": "Where each point of image 1 lies in image 2, worked out once for each pair from "
-    "the images alone, the same for all combinations.",
     "repeatability": "Share of the keypoints that both images show which are found in both.",
     "right match": "A match within 3 px of the reference of its pair.",
     "sharpness": "Matches right within 1 px / within 3 px: it decides how exact a model becomes.",

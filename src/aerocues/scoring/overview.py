@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -101,7 +102,7 @@ def overview_of(rankings: Sequence[Scores], comparison: Comparison) -> Overview:
     return Overview(
         datasets=comparison.dataset_names,
         evaluations=int((~np.isnan(scores)).sum()),
-        mean_correlation=float(np.nanmean(correlation[different])),
+        mean_correlation=_mean_of_known(correlation[different]),
         best=best_of_each(comparison),
         kept=kept_in_top(comparison),
         consistent=consistently_good(comparison),
@@ -109,6 +110,12 @@ def overview_of(rankings: Sequence[Scores], comparison: Comparison) -> Overview:
         alpha=_mean([by_alpha(each) for each in rankings]),
         aggregation=_mean([by_aggregation(each) for each in rankings]),
     )
+
+
+def _mean_of_known(values: NDArray[np.float64]) -> float:
+    """NaN where nothing is known: so few combinations that none correlate."""
+    known = values[~np.isnan(values)]
+    return float(known.mean()) if len(known) else math.nan
 
 
 def _mean(found: Sequence[Variants]) -> Variants:
