@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
 from aerocues.methods.registry import Methods, opencv_methods
-from aerocues.methods.selection import meaningful, runnable, select
+from aerocues.methods.selection import Asked, meaningful, runnable, select, select_measured
 
 TEXTS = st.sampled_from([str(c) for c in meaningful(opencv_methods())])
 
@@ -86,6 +86,9 @@ def test_full_names_select_exactly_themselves(wanted: list[str], unwanted: list[
         ("ORB-ORB-L2-*", "everything=True"),
         ("ORB-BEBLIT-HAM-BF", "did you mean ORB-BEBLID-HAM-BF"),
         ("nonsense", "aerocues methods"),
+        ("*PIXEL*", "on request, such as PIXELMAP-NONE-NONE-PIXELMAP; name them in full or add +e"),
+        ("*RAT*", "name them in full or add +extra"),
+        ("ORB-NONE*", "on request, such as ORB-NONE-NONE-PIXELMAP; name them in full"),
         ("ORB-ORB-HAM-BF,!ORB-*", "empty"),
     ],
 )
@@ -100,3 +103,42 @@ def test_an_unknown_detector_or_descriptor_says_which_there_are(methods: Methods
         select(methods, detectors="SURF")
     with pytest.raises(SelectionError, match="descriptor SURF"):
         select(methods, descriptors="ORB,SURF")
+
+
+def test_the_own_name_of_a_pair_matcher_takes_it_out(methods: Methods) -> None:
+    asked = Asked.of("!pixelmap", methods)
+    assert asked.leaves_out(Combination.of_pair_matcher("PIXELMAP"))
+    assert not asked.leaves_out(Combination("ORB", "NONE", "NONE", "PIXELMAP"))
+
+
+MEASURED = [
+    *("SIFT-SIFT-L2-BF", "ORB-ORB-HAM-BF", "ORB-ORB-HAM-GMS"),
+    *("PIXELMAP-NONE-NONE-PIXELMAP", "ORB-NONE-NONE-PIXELMAP", "COLMAP-SIFT-L2-COLMAP"),
+]
+
+
+@pytest.mark.parametrize(
+    ("patterns", "taken"),
+    [
+        ("*", [0, 1, 2, 3, 4, 5]),
+        ("*,!SIFT-*", [1, 2, 3, 4, 5]),
+        ("!sift-*", [1, 2, 3, 4, 5]),
+        ("PixelMap", [3]),
+        ("*,!PIXELMAP", [0, 1, 2, 4, 5]),
+        ("ORB-*-BF,+extra", [1]),
+        ("+extra", [0, 1, 2, 3, 4, 5]),
+        (Combination("ORB", "ORB", "HAM", "BF"), [1]),
+    ],
+)
+def test_measured_combinations_are_chosen_by_the_same_patterns(
+    methods: Methods, patterns: str | Combination, taken: list[int]
+) -> None:
+    assert select_measured(methods, patterns, MEASURED) == [MEASURED[each] for each in taken]
+
+
+@pytest.mark.parametrize("patterns", ["NOPE", "ORB-*,AKAZE-*", "+nothing"])
+def test_a_pattern_that_nothing_measured_matches_is_an_error(
+    methods: Methods, patterns: str
+) -> None:
+    with pytest.raises(SelectionError, match=r"no measured combination|no set"):
+        select_measured(methods, patterns, MEASURED)

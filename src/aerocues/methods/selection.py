@@ -15,6 +15,8 @@ from aerocues.methods.registry import Methods
 WILDCARDS = frozenset("*?[")
 WITH = "+"
 """Begins the name of a set of methods on request, such as ``+extra``."""
+SHOWN = 4
+"""Measured combinations that an error names."""
 
 
 Patterns = str | Combination | Iterable[str | Combination]
@@ -68,11 +70,9 @@ class Asked:
         Wildcards alone do not take those with a method on request, nor keypoints that a pair
         matcher guides. A pair matcher's own name takes its combination.
         """
-        whole = combination.of_pairs and not combination.guided
-        names = [str(combination), *([combination.matcher] if whole else [])]
         if combination.guided and combination.matcher not in pattern:
             return False
-        return any(fnmatchcase(name, pattern) for name in names) and all(
+        return matches(pattern, combination) and all(
             not row.on_request
             or row.on_request in self.sets
             or row.name in self.named
@@ -82,7 +82,39 @@ class Asked:
 
     def leaves_out(self, combination: Combination) -> bool:
         """Whether a combination is excluded."""
-        return any(fnmatchcase(str(combination), pattern) for pattern in self.excludes)
+        return any(matches(pattern, combination) for pattern in self.excludes)
+
+
+def matches(pattern: str, combination: Combination) -> bool:
+    """Whether a pattern in upper case is the text form, or the own name of a pair matcher."""
+    own = combination.of_pairs and not combination.guided
+    names = [str(combination), *([combination.matcher] if own else [])]
+    return any(fnmatchcase(name, pattern) for name in names)
+
+
+def select_measured(
+    methods: Methods, patterns: Patterns, measured: Iterable[str | Combination]
+) -> list[str]:
+    """Choose among combinations that were measured, whatever can run here.
+
+    Wildcards take methods on request, too: they were asked for when they were measured.
+
+    Raises
+    ------
+    SelectionError
+        If a pattern matches nothing that was measured.
+    """
+    asked = Asked.of(patterns, methods)
+    known = [Combination.parse(str(each)) for each in measured]
+    for pattern in asked.includes:
+        if not any(matches(pattern, each) for each in known):
+            told = ", ".join(map(str, known[:SHOWN])) + (", ..." if known[SHOWN:] else "")
+            raise SelectionError(f"no measured combination matches {pattern!r}; choose from {told}")
+    return [
+        str(each)
+        for each in known
+        if any(matches(pattern, each) for pattern in asked.includes) and not asked.leaves_out(each)
+    ]
 
 
 def runnable(methods: Methods, *, on_request: bool = False) -> list[Combination]:
@@ -115,6 +147,8 @@ def _unmatched(asked: Asked, pattern: str, methods: Methods) -> SelectionError:
             or f"{why_meaningless(first, methods)} (`everything=True` runs it all the same)"
         )
         return SelectionError(f"{pattern} selects nothing that can run: {first}: {reason}")
+    if requested := [each for each in everything if matches(pattern, each)]:
+        return SelectionError(_on_request(pattern, requested, methods))
     # A part of a name is no misspelt whole one: it wants its stars.
     for whole in (f"{pattern}-*", f"*-{pattern}-*", f"*-{pattern}"):
         if any(asked.takes(whole, each, methods) for each in everything):
@@ -122,6 +156,14 @@ def _unmatched(asked: Asked, pattern: str, methods: Methods) -> SelectionError:
     close = get_close_matches(pattern, [str(text) for text in everything], n=3, cutoff=0.6)
     hint = f"did you mean {', '.join(close)}?" if close else "see 'aerocues methods' for the names"
     return SelectionError(f"no combination matches {pattern!r}; {hint}")
+
+
+def _on_request(pattern: str, requested: Sequence[Combination], methods: Methods) -> str:
+    """Why a pattern takes nothing though it matches; no set brings guided keypoints."""
+    rows = (row for each in requested if not each.guided for row in methods.rows(each))
+    sets = dict.fromkeys(f"{WITH}{row.on_request}" for row in rows if row.on_request)
+    remedy = " or add ".join(["name them in full", *sets])
+    return f"{pattern!r} matches only methods on request, such as {requested[0]}; {remedy}"
 
 
 def _by_component(
