@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, metadata
+from typing import Any
 
 from aerocues.errors import ArgumentError
+from aerocues.methods.combination import Combination
 from aerocues.methods.parameters import AEROCUES, OPENCV
+from aerocues.methods.registry import Methods
 
-PERMISSIVE = ("Apache", "MIT", "BSD", "ISC", "Zlib", "0BSD", "Unlicense", "CC0")
-"""Beginnings of the names of licences without duties for the code around them."""
-KNOWN = {OPENCV: "Apache-2.0", AEROCUES: "Apache-2.0", "COLMAP": "BSD-3-Clause"}
+PERMISSIVE = {"apache", "mit", "bsd", "isc", "iscl", "zlib", "0bsd", "unlicense", "cc0"}
+"""Names of licences without duties for the code around them."""
+BESIDE = {
+    *("the", "license", "licence", "software", "version", "v", "and"),
+    *("0", "1.0", "2", "2.0", "v2", "v2.0", "3", "clause", "new", "modified", "revised"),
+    *("simplified", "expat", "cmu", "libpng", "universal", "public", "domain", "dedication"),
+    *("no", "attribution", "with", "llvm", "exception"),
+}
+"""Words that may stand beside these names and add no duty; all others may."""
+EITHER = re.compile(r"\sOR\s", re.IGNORECASE)
+CHOICE = re.compile(r"\(([^()]*\sOR\s[^()]*)\)", re.IGNORECASE)
+COLMAP = "COLMAP"
+PIXELMAP = "pixelmap-python"
+KNOWN = {OPENCV: "Apache-2.0", AEROCUES: "Apache-2.0", COLMAP: "BSD-3-Clause", PIXELMAP: "MIT"}
+BUILT_ON = {"PIXELMAP": PIXELMAP}
+"""What does the work of our own methods where that is another package."""
 KINDS = ("permissive",)
+LONGEST = 100
+"""Letters of a licence's name; what is longer is its text."""
 
 
 def licence_of(origin: str) -> str | None:
@@ -22,19 +41,48 @@ def licence_of(origin: str) -> str | None:
         found = metadata(origin.partition(" ")[0])
     except (PackageNotFoundError, ValueError):
         return None
-    fields = found.json
-    named = str(fields.get("license_expression") or fields.get("license") or "")
+    if expression := found.get("License-Expression"):
+        return str(expression)
     classifiers = [
         line.rpartition("::")[2].strip()
         for line in found.get_all("Classifier") or ()
         if line.startswith("License ::")
     ]
-    return named.splitlines()[0] if named else ", ".join(classifiers) or None
+    # "OSI Approved" alone names no licence.
+    if named := [each for each in classifiers if not each.lower().endswith("approved")]:
+        return ", ".join(named)
+    text = str(found.get("License") or "").strip()
+    return text if text and len(text) <= LONGEST and "\n" not in text else None
 
 
 def is_permissive(licence: str) -> bool:
-    """Whether a licence puts no duties on the code around it, by its name."""
-    return licence.startswith(PERMISSIVE) or licence.startswith("The Unlicense")
+    """Whether a licence puts no duties on the code around it, by its name.
+
+    Of licences joined by OR one must be permissive, of others all. Every word must be known: what
+    is added to the name of a licence, such as "non-commercial", may be a duty.
+    """
+    while inner := CHOICE.search(licence):
+        told = "MIT" if is_permissive(inner[1]) else "restricted"
+        licence = f"{licence[: inner.start()]} {told} {licence[inner.end() :]}"
+    alternatives = [set(re.findall(r"[\w.]+", each.lower())) for each in EITHER.split(licence)]
+    return any(words & PERMISSIVE and words <= PERMISSIVE | BESIDE for words in alternatives)
+
+
+def _origins(combination: Combination, methods: Methods) -> list[tuple[str, str | None]]:
+    """Names of the detector, descriptor and matcher, and who brings each; None if unknown."""
+    parts: list[tuple[str, Mapping[str, Any]]] = [
+        (combination.detector, methods.detectors),
+        (combination.descriptor, methods.descriptors),
+        (combination.matcher, methods.matchers),
+    ]
+    return [(name, _origin(name, rows)) for name, rows in parts]
+
+
+def _origin(name: str, rows: Mapping[str, Any]) -> str | None:
+    if name not in rows:
+        return COLMAP if name == COLMAP else None
+    origin = str(rows[name].origin)
+    return BUILT_ON.get(name, origin) if origin == AEROCUES else origin
 
 
 def why_not_licensed(combinations: Iterable[str], kind: str) -> dict[str, str]:
@@ -55,14 +103,10 @@ def why_not_licensed(combinations: Iterable[str], kind: str) -> dict[str, str]:
     if kind not in KINDS:
         raise ArgumentError(f"`licence` must be one of {', '.join(KINDS)}, got {kind!r}")
     methods = installed_methods()
-    origins = {"COLMAP": "COLMAP"}
-    for kind_of_rows in (methods.matchers, methods.descriptors, methods.detectors):
-        origins |= {name: row.origin for name, row in kind_of_rows.items()}
     reasons: dict[str, str] = {}
     for name in combinations:
-        detector, descriptor, _, matcher = name.split("-")
-        for part in (detector, descriptor, matcher):
-            licence = licence_of(origins[part]) if part in origins else None
+        for part, origin in _origins(Combination.parse(name), methods):
+            licence = None if origin is None else licence_of(origin)
             if licence is None:
                 reasons.setdefault(name, f"the licence of {part} is not known")
             elif not is_permissive(licence):
