@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import aerocues
-from aerocues.errors import AerocuesError, ScoreError
-from aerocues.methods.licences import is_permissive, licence_of, why_not_licensed
+from aerocues.errors import AerocuesError, ArgumentError, ScoreError
 from aerocues.scoring.finished import filled
 from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.tuning.choice import Choice, choose
@@ -62,6 +61,7 @@ def test_efficiency_is_the_score() -> None:
         ({"max_memory": "0.3GB"}, {NAMES[0], NAMES[1], NAMES[3]}),
         ({"max_memory": 90}, {NAMES[0], NAMES[3]}),
         ({"max_descriptor_bytes": 32}, {NAMES[0], NAMES[3]}),
+        ({"combinations": "*,!SIFT-*,!kaze-*"}, {NAMES[0], NAMES[3]}),
         ({"combinations": "*-ham-*,sift-*", "max_descriptor_bytes": 256}, {NAMES[0], NAMES[3]}),
         ({"licence": "permissive"}, set(NAMES)),
     ],
@@ -117,13 +117,44 @@ def test_what_cannot_be_compared_is_left_out() -> None:
         ({"max_seconds_per_image": "soon"}, "max_seconds_per_image"),
         ({"max_memory": "3 apples"}, "max_memory"),
         ({"max_memory": 1}, "no combination is within the limits"),
+        ({"max_memory": 1, "combinations": "ORB-*"}, "such as ORB-.*memory.*; allow more$"),
+        ({"combinations": "NOPE"}, "no measured combination matches 'NOPE'"),
+        ({"combinations": "!*"}, "take out fewer combinations$"),
         ({"licence": "mine"}, "licence"),
+        ({"seed": -1}, "seed"),
+        ({"seed": 1.5}, "seed"),
         ({"dataset": "moon"}, "moon"),
     ],
 )
 def test_errors_name_the_argument(settings: dict[str, Any], told: str) -> None:
     with pytest.raises(AerocuesError, match=told):
         choose(measured(), resamples=2, **settings)
+
+
+def test_results_are_given_once_and_at_least_one() -> None:
+    with pytest.raises(ArgumentError, match="give at least one result"):
+        choose([])
+    same = measured()
+    with pytest.raises(ScoreError, match="twice"):
+        choose([same, same], resamples=2)
+
+
+def test_results_of_one_dataset_are_numbered() -> None:
+    few = measured().table().filter(measured().table()["detector"] != "KAZE")[:-4]
+    found = choose([measured(), Stored(few)], "efficiency", resamples=2)
+    assert found.excluded == {
+        "KAZE-KAZE-L2-BF": "not measured on 2 flight",
+        "STAR-BRIEF-HAM-BF": "measured on fewer than half of the pairs of 2 flight",
+    }
+    assert {"score_1 flight", "score_2 flight"} <= set(found.ranked.columns)
+
+
+def test_what_was_measured_too_little_is_to_be_measured() -> None:
+    table = measured().table()
+    one = Stored(table.filter(table["detector"].is_in(["ORB", "STAR"])))
+    other = Stored(table.filter(table["detector"].is_in(["SIFT", "KAZE"])))
+    with pytest.raises(ScoreError, match=r"is left .*; measure them .* with `aerocues.run`$"):
+        choose([one, other], resamples=2, combinations="ORB-*")
 
 
 def test_what_was_not_measured_cannot_be_limited() -> None:
@@ -139,14 +170,3 @@ def test_failed_pairs_are_the_worst_and_missing_ones_the_mean() -> None:
     failed[1, 0] = True
     values = filled(replace(table, failed=failed))
     np.testing.assert_array_equal(values[..., 0], [[1, 3], [1, 2], [4, 4]])
-
-
-def test_licences_by_who_brings_a_method() -> None:
-    assert licence_of("opencv") == "Apache-2.0"
-    assert licence_of("no-such-distribution-anywhere") is None
-    assert licence_of("numpy") is not None
-    assert is_permissive("BSD-3-Clause")
-    assert not is_permissive("GPL-3.0-only")
-    names = ["ORB-ORB-HAM-BF", "SIFT-SIFT-L2-EXACT", "COLMAP-SIFT-L2-COLMAP", "MAGIC-ORB-HAM-BF"]
-    found = why_not_licensed(names, "permissive")
-    assert found == {"MAGIC-ORB-HAM-BF": "the licence of MAGIC is not known"}

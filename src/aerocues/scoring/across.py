@@ -13,7 +13,13 @@ from aerocues.scoring.combinations import has_chance_test, suitable_preset
 from aerocues.scoring.comparison import Comparison, Over, compare
 from aerocues.scoring.conditions import CONDITIONS, conditions_of
 from aerocues.scoring.cues import Scores, score
-from aerocues.scoring.measured import Measured, MeasuredRows, settings_from, table_of
+from aerocues.scoring.measured import (
+    Measured,
+    MeasuredRows,
+    refuse_repeated,
+    settings_from,
+    table_of,
+)
 from aerocues.scoring.platforms import compare_times
 from aerocues.scoring.settings import Names
 
@@ -101,10 +107,7 @@ def entries_of(
     ScoreError
         If one of the results cannot be scored.
     """
-    folders = [each.folder.resolve() for each in results]
-    for folder in folders:
-        if folders.count(folder) > 1:
-            raise ScoreError(f"{folder} is given twice; give each result once")
+    refuse_repeated(results)
     groups = [
         (source, names, rows)
         for source, each in enumerate(results)

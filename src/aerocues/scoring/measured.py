@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
@@ -69,6 +69,18 @@ def opened(results: Given | str | Path) -> Given | Results:
             f"`results` must be Results or the path of a results folder, got {results!r}"
         )
     return results
+
+
+def refuse_repeated(results: Iterable[Measured]) -> None:
+    """Raise ScoreError if the same folder, packed file or object is given twice."""
+    places: list[object] = []
+    for each in results:
+        folder = getattr(each, "folder", None)
+        place = id(each) if folder is None else folder.resolve()
+        if place in places:
+            named = "the same result" if folder is None else place
+            raise ScoreError(f"{named} is given twice; give each result once")
+        places.append(place)
 
 
 @dataclass(frozen=True)

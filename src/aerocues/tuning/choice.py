@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,16 +18,16 @@ from aerocues.arguments import (
     seconds_of,
 )
 from aerocues.defaults import RESAMPLES
-from aerocues.errors import ScoreError
+from aerocues.errors import ArgumentError, ScoreError
 from aerocues.methods.licences import why_not_licensed
+from aerocues.methods.selection import Patterns, select_measured
 from aerocues.notebooks import as_html
 from aerocues.phrases import count, likelihood
 from aerocues.results.combination_columns import COMBINATION
 from aerocues.scoring.constraints import LIMITS, costs_of, exceeded
 from aerocues.scoring.finished import FinishedScores, scores_of_finished
-from aerocues.scoring.measured import Measured, opened, rows_of_dataset
+from aerocues.scoring.measured import Measured, opened, refuse_repeated, rows_of_dataset
 from aerocues.scoring.objectives import OBJECTIVES, Objective
-from aerocues.scoring.settings import Names, names_of
 from aerocues.scoring.valuation import chances
 
 if TYPE_CHECKING:
@@ -37,6 +36,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LEAST_SHARE = 0.5
 """Share of the pairs of a dataset on which a combination must have been measured."""
+MEASURE = "measure them on all pairs with `aerocues.run`"
+ASK = "take out fewer combinations"
+ALLOW = "allow more"
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +89,7 @@ def choose(
     results: Measured | str | Path | Sequence[Measured | str | Path],
     objective: str = "balanced",
     *,
-    combinations: Names | None = None,
+    combinations: Patterns | None = None,
     dataset: str | None = None,
     max_seconds_per_image: float | str | None = None,
     max_memory: float | str | None = None,
@@ -107,8 +109,9 @@ def choose(
     results : Results, path, or sequence of them
     objective : str
         A row of `objectives.OBJECTIVES`.
-    combinations : str or sequence of str, optional
-        Patterns such as ``"ORB-*,*-HAM-BF"``: only these may be chosen.
+    combinations : str, Combination or iterable of both, optional
+        Patterns such as ``"ORB-*,!*-FLANN"``: only these may be chosen. Wildcards take methods on
+        request, too, where they were measured.
     dataset : str, optional
         Only this dataset counts; all of them by default.
     max_seconds_per_image : float or str, optional
@@ -133,6 +136,7 @@ def choose(
     """
     check_choice("objective", objective, OBJECTIVES)
     check_whole("resamples", resamples, 2)
+    check_whole("seed", seed, 0)
     most: dict[str, float] = {}
     if max_seconds_per_image is not None:
         most["max_seconds_per_image"] = seconds_of("max_seconds_per_image", max_seconds_per_image)
@@ -147,8 +151,6 @@ def choose(
     costs = _worst_costs(rows)
     excluded = _excluded(scored, costs, most, combinations, licence)
     kept = [name for name in scored[0].alternatives if name not in excluded]
-    if not kept:
-        raise ScoreError(_none_left(excluded))
     return Choice(
         objective=aim,
         datasets=tuple(each.dataset for each in scored),
@@ -163,23 +165,36 @@ def _excluded(
     scored: Sequence[FinishedScores],
     costs: pl.DataFrame,
     most: Mapping[str, float],
-    combinations: Names | None,
+    combinations: Patterns | None,
     licence: str | None,
 ) -> dict[str, str]:
-    """Why combinations are left out; the first reason counts."""
-    common = [name for name in scored[0].alternatives if all(name in each for each in scored)]
-    reasons = [
-        _not_everywhere(scored, common),
-        _hardly_measured(scored),
-        _unnamed(common, combinations),
-        exceeded(costs, most),
+    """Why combinations are left out; the first reason counts. ScoreError if all are."""
+    names = list(dict.fromkeys(name for each in scored for name in each.alternatives))
+    steps = [
+        (MEASURE, _not_everywhere(scored, names)),
+        (MEASURE, _hardly_measured(scored)),
+        (ASK, _unnamed(names, combinations)),
+        (ALLOW, exceeded(costs, most)),
+        (ALLOW, {} if licence is None else why_not_licensed(names, licence)),
     ]
-    if licence is not None:
-        reasons.append(why_not_licensed(common, licence))
     found: dict[str, str] = {}
-    for each in reasons:
-        found |= {name: why for name, why in each.items() if name not in found}
+    remedies: dict[str, str] = {}
+    for remedy, reasons in steps:
+        new = {name: why for name, why in reasons.items() if name not in found}
+        for name, why in list(new.items())[:1]:
+            remedies[remedy] = f"{name}: {why}"
+        found |= new
+    if len(found) == len(names):
+        raise ScoreError(_none_left(len(found), remedies))
     return found
+
+
+def _none_left(number: int, remedies: dict[str, str]) -> str:
+    """What to do; asking for more helps only where nothing else keeps combinations out."""
+    told = {each: why for each, why in remedies.items() if each != ASK} or remedies
+    left = "is within the limits" if ALLOW in told else "is left"
+    example = list(told.values())[-1]
+    return f"no combination {left} ({number:,} left out, such as {example}); {' or '.join(told)}"
 
 
 def _datasets(
@@ -188,39 +203,46 @@ def _datasets(
     listed = (
         results if isinstance(results, Sequence) and not isinstance(results, str) else [results]
     )
-    tables = [opened(each).table() for each in listed]
+    if not listed:
+        raise ArgumentError("`results` is empty; give at least one result")
+    measured = [opened(each) for each in listed]
+    refuse_repeated(measured)
+    tables = [each.table() for each in measured]
     if dataset is not None:
         return [rows_of_dataset(table, dataset) for table in tables]
     return [rows for table in tables for _, rows in table.group_by("dataset", maintain_order=True)]
 
 
-def _not_everywhere(scored: Sequence[FinishedScores], common: Sequence[str]) -> dict[str, str]:
-    names = dict.fromkeys(name for each in scored for name in each.alternatives)
-    return {
-        name: "not measured on " + ", ".join(each.dataset for each in scored if name not in each)
-        for name in names
-        if name not in set(common)
-    }
+def _labels(scored: Sequence[FinishedScores]) -> list[str]:
+    """The datasets, numbered where results have the same."""
+    names = [each.dataset for each in scored]
+    if len(set(names)) == len(names):
+        return names
+    return [f"{number} {name}" for number, name in enumerate(names, start=1)]
+
+
+def _not_everywhere(scored: Sequence[FinishedScores], names: Sequence[str]) -> dict[str, str]:
+    labelled = list(zip(_labels(scored), scored, strict=True))
+    lacking = {name: [label for label, each in labelled if name not in each] for name in names}
+    return {name: f"not measured on {', '.join(on)}" for name, on in lacking.items() if on}
 
 
 def _hardly_measured(scored: Sequence[FinishedScores]) -> dict[str, str]:
     """What was measured on few pairs, as a race leaves most combinations, is not comparable."""
     return {
-        each.alternatives[position]: f"measured on fewer than half of the pairs of {each.dataset}"
-        for each in scored
+        each.alternatives[position]: f"measured on fewer than half of the pairs of {label}"
+        for label, each in zip(_labels(scored), scored, strict=True)
         for position in np.flatnonzero(each.measured_share < LEAST_SHARE)
     }
 
 
-def _unnamed(names: Sequence[str], patterns: Names | None) -> dict[str, str]:
+def _unnamed(names: Sequence[str], patterns: Patterns | None) -> dict[str, str]:
     if patterns is None:
         return {}
-    chosen = [pattern.upper() for pattern in names_of(patterns)]
-    return {
-        name: "not among the combinations asked for"
-        for name in names
-        if not any(fnmatchcase(name.upper(), pattern) for pattern in chosen)
-    }
+    from aerocues.methods.plugins import installed_methods
+
+    chosen = select_measured(installed_methods(), patterns, names)
+    return {name: "not among the combinations asked for" for name in names if name not in chosen}
 
 
 def _worst_costs(rows: Sequence[pl.DataFrame]) -> pl.DataFrame:
@@ -244,10 +266,7 @@ def _ranked(
     own = np.stack([each.scores[at] for each, at in zip(scored, places, strict=True)])
     drawn = np.stack([each.drawn[:, at] for each, at in zip(scored, places, strict=True)])
     success = [each.success_rate[at] for each, at in zip(scored, places, strict=True)]
-    names = [each.dataset for each in scored]
-    if len(set(names)) < len(names):
-        names = [f"{number} {name}" for number, name in enumerate(names, start=1)]
-    single = {f"score_{name}": row for name, row in zip(names, own, strict=True)}
+    single = {f"score_{name}": row for name, row in zip(_labels(scored), own, strict=True)}
     over_sets = np.array([objective.over_blocks(each.T) for each in drawn.transpose(1, 0, 2)])
     known = any(each.units > 1 for each in scored)
     return pl.DataFrame(
@@ -260,11 +279,3 @@ def _ranked(
         },
         schema_overrides={"probability": pl.Float64},
     ).sort("score", COMBINATION, descending=[True, False])
-
-
-def _none_left(excluded: Mapping[str, str]) -> str:
-    name, why = next(iter(excluded.items()))
-    return (
-        f"no combination is within the limits ({len(excluded):,} left out, such as {name}: {why}); "
-        "allow more"
-    )
