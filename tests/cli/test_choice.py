@@ -8,8 +8,11 @@ from pathlib import Path
 import polars as pl
 import pytest
 
+from aerocues.cli.choice_table import print_choice
 from aerocues.scoring.objectives import OBJECTIVES
+from aerocues.tuning.choice import choose
 from tests.cli.conftest import Call
+from tests.scoring.measurements import Stored, row, rows
 
 
 def test_finished_results_answer_at_once(call: Call, finished: Path) -> None:
@@ -53,7 +56,12 @@ def test_score_ranks_for_a_purpose(call: Call, finished: Path, tmp_path: Path) -
         ["recommend", "--from", "RESULTS", "--no-final"],
         ["recommend", "--from", "RESULTS", "--max-memory", "much"],
         ["recommend", "--from", "nowhere"],
+        ["recommend", "--from", "RESULTS", "--from", "RESULTS"],
+        ["recommend", "--from", "RESULTS", "--combinations", "NOPE"],
         ["score", "RESULTS", "--objective", "speed", "--preset", "thesis"],
+        ["score", "RESULTS", "--objective", "speed", "--interval", "joint"],
+        ["score", "RESULTS", "--licence", "permissive", "--test", "bootstrap"],
+        ["score", "RESULTS", "--max-descriptor-bytes", "40", "--top-k", "3"],
     ],
 )
 def test_what_makes_no_sense_is_refused(call: Call, finished: Path, words: list[str]) -> None:
@@ -66,3 +74,14 @@ def test_every_objective_can_be_asked_for() -> None:
     from aerocues.cli.limit_options import Objective
 
     assert [each.value for each in Objective] == list(OBJECTIVES)
+
+
+def test_medians_are_told_of_where_there_are_seconds(capsys: pytest.CaptureFixture[str]) -> None:
+    table = rows(
+        *(row(name, pair) for name in ("ORB-ORB-HAM-BF", "SIFT-SIFT-L2-BF") for pair in range(3))
+    )
+    print_choice(choose(Stored(table), "accuracy", resamples=2), 5)
+    assert "seconds are medians" in capsys.readouterr().out
+    without = table.with_columns(total_seconds=pl.lit(None, pl.Float64))
+    print_choice(choose(Stored(without), "accuracy", resamples=2), 5)
+    assert "seconds" not in capsys.readouterr().out

@@ -35,9 +35,10 @@ def print_choice(found: Choice, top: int) -> None:
     if len(found.ranked) > top:
         console.print(f"best {top} of {len(found.ranked):,}; --top shows more")
     told = dict.fromkeys(found.presets)
+    medians = "; seconds are medians" if "total_seconds" in _costs(found, top) else ""
     console.print(
         f"objective {found.objective.name}: {found.objective.definition}\nscoring preset "
-        f"{', '.join(told)}; a failed pair counts as the worst; seconds are medians",
+        f"{', '.join(told)}; a failed pair counts as the worst{medians}",
         markup=False,
     )
 
@@ -70,9 +71,14 @@ def _left_out(found: Choice) -> str:
     return f"Left out: {reasons}."
 
 
-def _ranking(found: Choice, top: int) -> Table:
+def _costs(found: Choice, top: int) -> list[str]:
+    """Columns of costs that the table has: those that are known of any of the best."""
     shown = found.ranked.head(top)
-    costs = [name for name in COSTS if shown[name].is_not_null().any()]
+    return [name for name in COSTS if shown[name].is_not_null().any()]
+
+
+def _ranking(found: Choice, top: int) -> Table:
+    shown, costs = found.ranked.head(top), _costs(found, top)
     own = [name for name in shown.columns if name.startswith("score_")]
     headings = ["score", "best in", "success", *(COSTS[name][0] for name in costs)]
     headings += [name.removeprefix("score_") for name in own]

@@ -97,6 +97,18 @@ def with_sets(combinations: str | None, sets: str | None) -> str | None:
     return ",".join([*([combinations] if combinations else []), *asked]) or None
 
 
+def given_options(context: typer.Context) -> dict[str, str]:
+    """What the command line gives: names of parameters, and how the command line writes them."""
+    found: dict[str, str] = {}
+    for parameter in context.command.params:
+        name = parameter.name or ""
+        source = context.get_parameter_source(name)
+        if source and source.name == "COMMANDLINE":
+            dashed = [word for word in parameter.opts if word.startswith("--")]
+            found[name] = dashed[0] if dashed else name.upper()
+    return found
+
+
 DetectorsOption = Annotated[
     str | None, typer.Option(metavar="GLOBS", help="Use only these detectors.")
 ]

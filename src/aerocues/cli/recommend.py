@@ -35,6 +35,7 @@ from aerocues.cli.options import (
     TopOption,
     WithOption,
     WorkersOption,
+    given_options,
     with_sets,
 )
 from aerocues.cli.serving import LiveOption
@@ -202,13 +203,10 @@ def recommend(
 
 def _refuse_measuring(context: typer.Context) -> None:
     """Raise a usage error where something was given that only a race takes."""
-    for parameter in context.command.params:
-        source = context.get_parameter_source(parameter.name or "")
-        if parameter.name not in OF_RESULTS and source and source.name == "COMMANDLINE":
-            dashed = [word for word in parameter.opts if word.startswith("--")]
-            named = dashed[0] if dashed else "DATASET"
+    for name, written in given_options(context).items():
+        if name not in OF_RESULTS:
             raise typer.BadParameter(
-                f"{named} is for measuring, and --from for finished results; give one of the two"
+                f"{written} is for measuring, and --from for finished results; give one of the two"
             )
 
 

@@ -17,7 +17,7 @@ from aerocues.cli.limit_options import (
     MaxSecondsOption,
     Objective,
 )
-from aerocues.cli.options import JsonOption, ResultsArgument, TopOption
+from aerocues.cli.options import JsonOption, ResultsArgument, TopOption, given_options
 from aerocues.cli.output import STANDARD_OUTPUT, print_json, write_table
 from aerocues.cli.scoring import (
     AggregationOption,
@@ -39,6 +39,12 @@ if TYPE_CHECKING:
 # Of what a paper has room for.
 PRINTED = ("rank", "combination", "score", "score_low", "score_high", "rank_low", "rank_high")
 
+# What an objective and limits leave without effect.
+OF_CUES = {
+    *("preset", "criteria", "failures", "alpha", "weights", "aggregation", "reconstruction"),
+    *("interval", "test", "top_k"),
+}
+
 
 class Interval(StrEnum):
     """Values of ``--interval``."""
@@ -48,6 +54,7 @@ class Interval(StrEnum):
 
 
 def score(
+    context: typer.Context,
     folder: ResultsArgument,
     objective: Annotated[
         Objective | None,
@@ -99,7 +106,7 @@ def score(
     targets = {"csv": csv, "latex": latex, "markdown": markdown}
     limits = Limits(max_seconds_per_image, max_memory, max_descriptor_bytes, licence)
     if objective is not None or limits.given():
-        _refuse_settings(preset, criteria, failures, alpha, weights, aggregation, reconstruction)
+        _refuse_settings(context)
         drawn = {"dataset": dataset, "resamples": resamples, "seed": seed}
         _for_purpose(folder, objective, {**limits.given(), **drawn}, targets, top, as_json=as_json)
         return
@@ -139,12 +146,13 @@ def score(
         print_scores(ranking, measured, top)
 
 
-def _refuse_settings(*settings: object) -> None:
-    if any(setting is not None for setting in settings):
-        raise typer.BadParameter(
-            "an objective and limits have their own criteria and weights; leave out --preset, "
-            "--criteria, --failures, --alpha, --weights, --aggregation and --reconstruction"
-        )
+def _refuse_settings(context: typer.Context) -> None:
+    """Raise a usage error where something was given that only CUES takes."""
+    for name, written in given_options(context).items():
+        if name in OF_CUES:
+            raise typer.BadParameter(
+                f"{written} is for CUES, not for an objective or limits; leave it out"
+            )
 
 
 def _for_purpose(
