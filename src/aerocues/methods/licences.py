@@ -41,8 +41,8 @@ def licence_of(origin: str) -> str | None:
         found = metadata(origin.partition(" ")[0])
     except (PackageNotFoundError, ValueError):
         return None
-    if expression := found.get("License-Expression"):
-        return str(expression)
+    if expression := found.get_all("License-Expression"):
+        return str(expression[0])
     classifiers = [
         line.rpartition("::")[2].strip()
         for line in found.get_all("Classifier") or ()
@@ -51,7 +51,7 @@ def licence_of(origin: str) -> str | None:
     # "OSI Approved" alone names no licence.
     if named := [each for each in classifiers if not each.lower().endswith("approved")]:
         return ", ".join(named)
-    text = str(found.get("License") or "").strip()
+    text = "".join(found.get_all("License") or ()).strip()
     return text if text and len(text) <= LONGEST and "\n" not in text else None
 
 
