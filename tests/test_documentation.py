@@ -269,7 +269,9 @@ def smaller(command: str) -> str:
         return "aerocues datasets fetch --help"
     command = re.sub(r" --budget \S+", " --budget 1h", command)
     command = command.replace(MANY, FEWER)
-    if command.startswith("aerocues recommend") and " --from " not in command:
+    if " --from " in command and command.startswith("aerocues recommend"):
+        return command  # nothing is measured
+    if command.startswith("aerocues recommend"):
         command += " --no-final"
     if command.startswith("aerocues reconstruct"):
         command += " --no-baseline"
