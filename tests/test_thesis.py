@@ -83,6 +83,8 @@ def outputs(shared_data: Path, tmp_path_factory: pytest.TempPathFactory) -> dict
         (folder / file.name).symlink_to(file)
     before = Path.cwd()
     os.chdir(folder)
+    wide = pytest.MonkeyPatch()
+    wide.setenv("COLUMNS", "200")  # else columns are left out where the terminal is narrow
     try:
         found: dict[str, str] = {}
         by_title = {title: text.splitlines(keepends=True) for title, text in sections().items()}
@@ -93,6 +95,7 @@ def outputs(shared_data: Path, tmp_path_factory: pytest.TempPathFactory) -> dict
             told = "".join(printed(command) for command in own)
             found[title] = told or found.get(FED_BY.get(title, ""), "")
     finally:
+        wide.undo()
         os.chdir(before)
     assert not every
     return found
