@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 
 from aerocues.errors import ArgumentError
@@ -48,11 +48,7 @@ def seconds_of(parameter: str, value: str | float) -> float:
     ArgumentError
         If it is neither.
     """
-    if isinstance(value, str):
-        match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([a-z]*)\s*", value.lower())
-        seconds = float(match[1]) * SECONDS[match[2]] if match and match[2] in SECONDS else 0.0
-    else:
-        seconds = _number(value)
+    seconds = _in_units(value, SECONDS)
     if not 0 < seconds < math.inf:
         raise ArgumentError(
             f"`{parameter}` must be a time above 0, such as 90s, 5min or 1h, got {value!r}"
@@ -68,17 +64,20 @@ def megabytes_of(parameter: str, value: str | float) -> float:
     ArgumentError
         If it is neither.
     """
-    if isinstance(value, str):
-        match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([a-z]*)\s*", value.lower())
-        known = match is not None and match[2] in MEGABYTES
-        megabytes = float(match[1]) * MEGABYTES[match[2]] if match and known else 0.0
-    else:
-        megabytes = _number(value)
+    megabytes = _in_units(value, MEGABYTES)
     if not 0 < megabytes < math.inf:
         raise ArgumentError(
             f"`{parameter}` must be a size above 0, such as 300MB or 1.5GB, got {value!r}"
         )
     return megabytes
+
+
+def _in_units(value: str | float, units: Mapping[str, float]) -> float:
+    """A number, or a text of a number and a unit; 0 or NaN where it is neither."""
+    if not isinstance(value, str):
+        return _number(value)
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([a-z]*)\s*", value.lower())
+    return float(match[1]) * units[match[2]] if match and match[2] in units else 0.0
 
 
 def _number(value: object) -> float:

@@ -40,9 +40,7 @@ def hierarchy(scores: Scores) -> dict[str, pl.DataFrame]:
         )
         .group_by("name")
         .agg(
-            pl.col("score").mean().alias("mean"),
-            pl.col("score").max().alias("max"),
-            pl.col("score").std(ddof=0).alias("standard_deviation"),
+            *_spread_of_scores(),
             pl.len().alias("alternatives"),
             pl.col("tried").sum().alias("evaluations"),
             pl.col("alternative").sort_by("score", descending=True).first().alias("best"),
@@ -80,9 +78,7 @@ def hierarchy_across(comparison: Comparison) -> dict[str, pl.DataFrame]:
         )
         .group_by("name")
         .agg(
-            pl.col("score").mean().alias("mean"),
-            pl.col("score").max().alias("max"),
-            pl.col("score").std(ddof=0).alias("standard_deviation"),
+            *_spread_of_scores(),
             pl.len().alias("evaluations"),
             pl.col("alternative").get(highest).alias("best"),
             pl.col("dataset").get(highest),
@@ -90,3 +86,15 @@ def hierarchy_across(comparison: Comparison) -> dict[str, pl.DataFrame]:
         .sort("mean", "name", descending=[True, False])
         for component, labels in comparison.components.items()
     }
+
+
+def _spread_of_scores() -> list[pl.Expr]:
+    """Mean, largest and standard deviation of the column ``score``."""
+    import polars as pl
+
+    score = pl.col("score")
+    return [
+        score.mean().alias("mean"),
+        score.max().alias("max"),
+        score.std(ddof=0).alias("standard_deviation"),
+    ]
