@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from tests.methods.distribution import write_distribution
 
 # Pairs 0-1, 1-2, 2-3, 3-4 of five views; the marked one is view 2: pairs 1 and 2 suffer.
 GUILTY = "view_2.png"
-SUFFERING = {1, 2}
+SUFFERING = frozenset({1, 2})
 # On a busy machine an honest call may sit idle for seconds.
 TIMEOUT = 8
 LIMITS: dict[str, Any] = {"workers": 2, "timeout": TIMEOUT, "memory_limit": 700 / 1024}
@@ -80,7 +80,9 @@ def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Arena]:
     assert not workers_of(str(tmp_path))
 
 
-def assert_only_the_guilty_failed(results: Results, healthy: Rows, faults: Sequence[str]) -> None:
+def assert_only_the_guilty_failed(
+    results: Results, healthy: Rows, faults: Sequence[str], pairs: Set[int] = SUFFERING
+) -> None:
     """Rows of faulty methods on the marked image failed as expected; the rest is untouched."""
     rows = rows_of(results.table())
     assert rows.keys() == healthy.keys()
@@ -89,7 +91,7 @@ def assert_only_the_guilty_failed(results: Results, healthy: Rows, faults: Seque
         name: fault
         for name, row in healthy.items()
         for fault in faults
-        if row["pair"] in SUFFERING and fault in (row["detector"], str(row["descriptor"])[2:])
+        if row["pair"] in pairs and fault in (row["detector"], str(row["descriptor"])[2:])
     }
     assert failed == guilty.keys()
     assert set(guilty.values()) == set(faults)
@@ -122,8 +124,11 @@ def test_a_fault_costs_only_itself(arena: Arena, fault: str) -> None:
 def test_several_faults_in_one_run(arena: Arena) -> None:
     several = [fault for fault in OUTCOMES if fault not in ALONE]
     combinations = ",".join(combinations_of(fault) for fault in several)
-    healthy = arena.healthy(combinations)
-    assert_only_the_guilty_failed(arena.run(combinations), healthy, several)
+    # One guilty pair, between others, as each timeout takes its time.
+    pairs = [pair for n, pair in enumerate(arena.dataset.pairs) if n != max(SUFFERING)]
+    small = replace(arena, dataset=replace(arena.dataset, pairs=pairs))
+    healthy = small.healthy(combinations)
+    assert_only_the_guilty_failed(small.run(combinations), healthy, several, {1})
 
 
 @pytest.mark.slow

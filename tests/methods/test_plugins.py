@@ -36,10 +36,17 @@ from tests.methods.pictures import shifted_pair
 from tests.waiting import wait_until
 
 
+@pytest.fixture(scope="module")
+def arena_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A distribution with one method of each kind; each is tried once, and remembered."""
+    folder = tmp_path_factory.mktemp("arena")
+    write_distribution(folder, "feature-arena", ENTRY_POINTS, CODE, version="0.3")
+    return folder
+
+
 @pytest.fixture
-def arena(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Methods:
-    write_distribution(tmp_path, "feature-arena", ENTRY_POINTS, CODE, version="0.3")
-    monkeypatch.syspath_prepend(tmp_path)
+def arena(arena_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Methods:
+    monkeypatch.syspath_prepend(arena_folder)
     forget(monkeypatch, "arena")
     return installed_methods()
 

@@ -8,24 +8,44 @@ from __future__ import annotations
 
 from multiprocessing.connection import Connection
 
+from aerocues.errors import AerocuesError
 from aerocues.methods.combination import Combination
+from aerocues.pipeline.feature_source import Announce
 from aerocues.processes.child import run_child
 from aerocues.processes.heartbeat import Heartbeat
+from aerocues.reconstruction.matching import Links, Matching
+from aerocues.reconstruction.scene import Scene
+from aerocues.results.reconstruction_schema import BASELINE
+
+
+def _done(scene: Scene, work: object, announce: Announce) -> object:
+    """The result of one task; it imports no more than the task needs, which can take a second."""
+    if isinstance(work, str):
+        from aerocues.reconstruction.images import prepare_image
+
+        return prepare_image(scene.dataset.image(work), scene.images)
+    from aerocues.reconstruction.colmap import quiet
+
+    quiet()
+    if isinstance(work, Links):
+        from aerocues.reconstruction.linked_scene import LinkMaker
+
+        return LinkMaker(scene, work.combination, announce).make()
+    if work == BASELINE:
+        from aerocues.reconstruction.baseline import BaselineModel
+
+        return BaselineModel(scene, work, announce).make()
+    from aerocues.reconstruction.combination_model import CombinationModel
+
+    if isinstance(work, Matching):
+        return CombinationModel(scene, work.combination, announce).match_ahead()
+    assert isinstance(work, Combination)
+    return CombinationModel(scene, work, announce).make()
 
 
 def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
     """Process one task after the other until the parent closes the pipe."""
-    from aerocues.errors import AerocuesError
-    from aerocues.reconstruction.baseline import BaselineModel
-    from aerocues.reconstruction.colmap import quiet
-    from aerocues.reconstruction.combination_model import CombinationModel
-    from aerocues.reconstruction.images import prepare_image
-    from aerocues.reconstruction.linked_scene import LinkMaker
-    from aerocues.reconstruction.matching import Links, Matching
-    from aerocues.results.reconstruction_schema import BASELINE
-
     scene = pipe.recv()
-    quiet()
     pipe.send("ready")
     while True:
         try:
@@ -33,15 +53,7 @@ def serve(pipe: Connection, heartbeat: Heartbeat) -> None:
         except EOFError:
             return
         try:
-            if isinstance(work, Combination):
-                maker = BaselineModel if work == BASELINE else CombinationModel
-                found: object = maker(scene, work, heartbeat.announce).make()
-            elif isinstance(work, Matching):
-                found = CombinationModel(scene, work.combination, heartbeat.announce).match_ahead()
-            elif isinstance(work, Links):
-                found = LinkMaker(scene, work.combination, heartbeat.announce).make()
-            else:
-                found = prepare_image(scene.dataset.image(work), scene.images)
+            found = _done(scene, work, heartbeat.announce)
         except (AerocuesError, OSError) as error:
             found = error
         heartbeat.announce(None)
