@@ -290,6 +290,10 @@ def smaller(command: str) -> str:
         command += " --max-pairs 2"
     if command.startswith(("aerocues run", "aerocues recommend")) and not CHOICE.search(command):
         command += TWO_METHODS
+    if command.startswith("aerocues run ") and not re.search(
+        " --(timing|timing-pairs|engine) ", command
+    ):
+        command += " --timing shared --workers 1"
     return command
 
 

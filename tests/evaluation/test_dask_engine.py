@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import re
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -210,7 +211,8 @@ def test_what_takes_workers_down_is_named(
     guilty = {n for n, r in rows.items() if r["detector"] == "KILL_PARENT" and r["pair"] in (1, 2)}
     for name in guilty:
         assert rows[name]["status"] == "crashed"
-        assert str(rows[name]["message"]).startswith("2 Dask workers ")
+        # How many depends on whether they could report it before they died.
+        assert re.match(r"\d+ Dask workers died in ", str(rows[name]["message"]))
     assert_same_rows(
         {name: row for name, row in rows.items() if name not in guilty},
         {name: row for name, row in expected.items() if name not in guilty},
