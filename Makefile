@@ -170,7 +170,7 @@ bench: setup ## the benchmarks of the framework itself
 	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
 
 tables: setup ## bring the tables of the guide up to date with the source
-	$(BIN)/python docs/tables.py
+	$(BIN)/python -m docs.tables
 
 lock: setup ## pin the newest allowed versions in the files *.lock (needs uv)
 	$(LOCK) pyproject.toml --all-extras --group dev --upgrade --output-file requirements.lock
