@@ -131,12 +131,16 @@ def entries_of(
         conditions = conditions_of(rows, results[source].settings)
         entry = Entry(dataset, dataset, machine, rows, scores, name, known, source, conditions)
         found.append((results[source].folder, entry))
-    presets = sorted({entry.preset for _, entry in found})
+    _refuse_different_presets([entry for _, entry in found])
+    return _with_names(found)
+
+
+def _refuse_different_presets(entries: Sequence[Entry]) -> None:
+    presets = sorted({entry.preset for entry in entries})
     if len(presets) > 1:
         raise ScoreError(
             f"the results suit different presets ({', '.join(presets)}); choose one with `preset`"
         )
-    return _with_names(found)
 
 
 def _in_common(groups: Sequence[pl.DataFrame]) -> str | None:
