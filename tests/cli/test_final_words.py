@@ -30,6 +30,14 @@ def test_no_model_is_told() -> None:
     assert f"Take {LEADER}, which leads the race" in headline(found, LEADER)
 
 
+def test_a_final_without_models_says_what_was_to_be_built() -> None:
+    none = final()
+    assert f"Take {LEADER}, which leads the race" in headline(none, LEADER)
+    told = " ".join(notes(none))
+    assert "no model of all images (10 of 10) was finished in time" in told
+    assert f"no time for COLMAP's default, {ORB}, {SIFT}" in told
+
+
 def test_notes_tell_who_came_close_and_who_had_no_time() -> None:
     found = final(model(SIFT), model(ORB, points_in_3_images=399))
     told = " ".join(notes(found))

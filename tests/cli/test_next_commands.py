@@ -24,7 +24,7 @@ def test_where_colmaps_default_wins_the_next_command_makes_its_model(photos: Pat
     assert f"aerocues use {SIFT} --from {photos} --as python" in others
     lost = replace(recommended, final=final(model(SIFT), model(BASELINE, points_in_3_images=9)))
     assert f" --combinations {SIFT} " in next_commands(lost, same)[0]
-    assert " --combinations A-X-HAM-BF " in next_commands(recommended, same)[0]
+    assert " --combinations A-X-HAM-EXACT " in next_commands(recommended, same)[0]
 
 
 def test_images_stay_upright_in_the_next_commands(photos: Path) -> None:

@@ -43,11 +43,14 @@ def headline(final: Final, leader: str) -> str:
 def notes(final: Final) -> list[str]:
     """What was built of which images, who came close, and what there was no time for."""
     part = "all images" if final.images == final.of else "a connected block of the flight"
-    told = [
-        f"{count(len(final.rows), 'model')} of {part} ({final.images} of {final.of}) in "
-        f"{final.folder}; the best holds the most images, then placed share x sqrt(points in 3 "
-        "images / error)" + (", less for more time" if final.objective.time_power else "")
-    ]
+    share = f"{part} ({final.images} of {final.of})"
+    told = [f"no model of {share} was finished in time"]
+    if final.rows:
+        told = [
+            f"{count(len(final.rows), 'model')} of {share} in {final.folder}; the best holds the "
+            "most images, then placed share x sqrt(points in 3 images / error)"
+            + (", less for more time" if final.objective.time_power else "")
+        ]
     told += _close(final)
     if final.unfinished:
         told.append(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aerocues.defaults import FLIGHT_KEYPOINTS
+from aerocues.methods.combination import Combination
 from aerocues.results.combination_columns import name_in_row
 
 if TYPE_CHECKING:
@@ -98,11 +99,19 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
             "models",
             *_one_scene(found),
             "--combinations",
-            found.best if final else best,
+            found.best if final else quickly_matched(best),
         ]
         words += ["--from", str(found.folder)]
         commands.insert(0, ["reconstruct", *measured.words(FLIGHT_KEYPOINTS), *words])
     return [shlex.join(["aerocues", *command]) for command in commands]
+
+
+def quickly_matched(name: str) -> str:
+    """The same with the exact matcher in place of brute force, as models are built in a final."""
+    from aerocues.modelling.final import exactly_matched
+
+    combination = Combination.parse(name)
+    return str(exactly_matched(combination)) if combination.matcher == "BF" else name
 
 
 def _one_scene(found: Recommendation) -> list[str]:

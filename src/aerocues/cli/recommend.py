@@ -256,7 +256,7 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
         console.print()
     console.print(answer(found), soft_wrap=True, markup=False)
     console.print()
-    if found.final:
+    if found.final and found.final.rows:
         print_table(console, final_table(found.final, found.ranked["combination"].to_list()))
         console.print("\nThe race on pairs:\n")
     print_table(console, ranking(found, top))

@@ -52,7 +52,7 @@ def build_final(
     seed: int,
     workers: int | None,
     progress: Progress | None,
-) -> Final | None:
+) -> Final:
     """Build models of the leaders with the exact matcher, and of COLMAP's default.
 
     Parameters
@@ -71,8 +71,8 @@ def build_final(
 
     Returns
     -------
-    Final or None
-        None where no model was finished.
+    Final
+        Without rows where no model was finished.
     """
     deadline = time.monotonic() + seconds
     leaders = finalists(found.ranked["combination"].to_list(), Results(found.folder).table())
@@ -93,8 +93,7 @@ def build_final(
         options = replace(options, protocol=replace(options.protocol, intrinsics="refine"))
         models = reconstruct_scene(scene, names, folder, options, progress, store)
     images = len(scene.images), len(dataset.images)
-    final = Final.of_models(models.table(), asked, images, folder, found.objective)
-    return final if final.rows else None
+    return Final.of_models(models.table(), asked, images, folder, found.objective)
 
 
 def _with_leader(

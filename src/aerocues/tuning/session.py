@@ -115,9 +115,7 @@ def budget_too_small(budget: float, spent: float, why: str) -> SelectionError:
     """The error for a budget in seconds of which `spent` are gone; it suggests a larger one."""
     wanted = MORE * max(budget, spent)
     enough = next((each for each in BUDGETS if each >= wanted), round(wanted))
-    return SelectionError(
-        f'a budget of {budget:g} s is too small: {why}; give `budget="{_typed(enough)}"`'
-    )
+    return SelectionError(f'the budget is too small: {why}; give `budget="{_typed(enough)}"`')
 
 
 def _typed(seconds: int) -> str:
