@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -91,7 +93,9 @@ def test_placeholders_in_the_data_stay_as_they_are(flight: Results) -> None:
     text = page_of({"title": "{{style}}", "name": "{{plotly}} {{app}} {{payload}}"})
     assert "<title>{{style}}</title>" in text
     assert '"{{plotly}} {{app}} {{payload}}"' in text
-    assert "Plotly" in text
+    packed = re.search(r'id="plotly">([^<]+)<', text)
+    assert packed is not None
+    assert b"Plotly" in gzip.decompress(base64.b64decode(packed[1]))
 
 
 def test_the_program_stands_in_a_scope_of_its_own() -> None:

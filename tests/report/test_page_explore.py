@@ -40,6 +40,37 @@ def test_a_point_opens_and_is_marked_in_other_figures(open_report: Open) -> None
     assert opened.fragment().startswith("decide.pick=")
 
 
+def test_dragging_over_points_shows_them_larger(open_report: Open) -> None:
+    opened = open_report()
+    opened.figure("pareto")
+    drawing = opened.page.locator("#figure-pareto svg")
+    whole = drawing.text_content()
+    box = drawing.bounding_box()
+    assert box is not None
+    opened.page.mouse.move(box["x"] + 200, box["y"] + 100)
+    opened.page.mouse.down()
+    opened.page.mouse.move(box["x"] + 260, box["y"] + 150)
+    opened.page.mouse.up()
+    assert drawing.text_content() != whole
+    assert not opened.page.locator("#drawer").is_visible()
+    opened.page.mouse.dblclick(box["x"] + 150, box["y"] + 300)
+    assert drawing.text_content() == whole
+
+
+def test_the_first_screen_needs_no_plotly(open_report: Open, report: Path, tmp_path: Path) -> None:
+    """As in a browser that is too old to unpack it."""
+    file = tmp_path / "old.html"
+    text = report.read_text(encoding="utf-8").replace('id="plotly">', 'id="plotly">-')
+    file.write_text(text, encoding="utf-8")
+    opened = open_report(file=file)
+    opened.figure("pareto")
+    opened.figure("map")
+    opened.figure("heat")
+    assert opened.page.locator("#figure-heat .main-svg").count() == 1
+    opened.figure("weights")
+    assert "too old to draw" in opened.page.inner_text("#figure-weights .nothing")
+
+
 def test_limits_keep_what_is_between_them_and_the_worst(open_report: Open) -> None:
     opened = open_report()
     scores = opened.page.evaluate("JSON.parse(payload.textContent).entries[0].score.score")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import html
 import json
 import re
@@ -32,7 +34,7 @@ def page_of(payload: Mapping[str, Any]) -> str:
         "style": _inside_element(_read(folder / "style.css")),
         "payload": payload_text(payload),
         "app": _inside_element(_application(folder / "app")),
-        "plotly": _inside_element(_plotly()),
+        "plotly": packed(_plotly()),
     }
     return PLACE.sub(lambda found: contents[found[1]], _read(folder / "index.html"))
 
@@ -41,6 +43,11 @@ def payload_text(payload: Mapping[str, Any]) -> str:
     """The payload as JSON, in which no text can start or end an HTML element."""
     text = json.dumps(payload, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c")
+
+
+def packed(text: str) -> str:
+    """Text as the page unpacks it: gzip, in base64."""
+    return base64.b64encode(gzip.compress(text.encode(), compresslevel=6, mtime=0)).decode("ascii")
 
 
 def _read(file: Traversable) -> str:

@@ -1,4 +1,4 @@
-/* Starts the page: tables at once, figures as soon as Plotly is loaded, which comes last. */
+/* Starts the page: the first screen at once, figures of Plotly as soon as it is unpacked. */
 
 import {applyTheme, darkWanted} from "./basis/colours.js";
 import {state} from "./basis/state.js";
@@ -14,7 +14,8 @@ import {RELATIONS_SECTION} from "./relations/section.js";
 import {PICTURES_SECTION} from "./pictures/section.js";
 import {MODELS_SECTION} from "./models/section.js";
 import {METHOD_SECTION} from "./method/section.js";
-import {drawFigure, drawStale, figures, onChosen, refreshFigures} from "./shell/figure.js";
+import {drawFigure, drawStale, drawWaiting, figures, onChosen, refreshFigures} from "./shell/figure.js";
+import {unpackPlotly} from "./shell/plotly.js";
 import {addSection, buildMasthead, buildSections, buildToolbar, followScrolling, goTo, updateSections, updateToolbar} from "./shell/shell.js";
 
 /* In the order of the page. */
@@ -49,7 +50,7 @@ function start() {
   });
   darkWanted.addEventListener("change", () => update(new Set(["theme"])));
   followScrolling();
-  document.addEventListener("DOMContentLoaded", drawStale);
+  unpackPlotly(drawWaiting);
   window.addEventListener("beforeprint", drawForPrint);
   window.addEventListener("afterprint", () => {
     document.documentElement.classList.remove("printing");

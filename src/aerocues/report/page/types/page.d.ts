@@ -206,10 +206,96 @@ interface Figure extends Omit<FigureSpec, "controls"> {
   controls: Record<string, Control>;
   /** Whether it is out of date. */
   stale: boolean;
+  /** Whether it waits for Plotly. */
+  waits: boolean;
   /** Whether it is in the window or close to it. */
   near: boolean;
   /** Of the latest drawing. */
   width: number;
+}
+
+/* Scatter plots that are drawn without Plotly */
+
+/** Limits of an axis; of a logarithmic one as powers of 10. */
+interface AxisRange {
+  isLog: boolean;
+  low: number;
+  high: number;
+}
+
+interface Tick {
+  at: number;
+  text: string;
+}
+
+/** Values as pixels; the inverse gives limits as a range has them. */
+interface Scale {
+  at(value: number): number;
+  inverse(pixel: number): number;
+  ticks: Tick[];
+}
+
+interface ScatterAxis {
+  title: string;
+  words(value: number): string;
+  range: AxisRange;
+}
+
+interface SeriesStyle {
+  color: string;
+  symbol: string;
+}
+
+interface ScatterPoint {
+  x: number;
+  y: number;
+  name: string;
+  hollow: boolean;
+  tip: string;
+}
+
+/** A point where it is drawn, in pixels. */
+interface Spot extends ScatterPoint {
+  px: number;
+  py: number;
+}
+
+interface ScatterMark {
+  x: number;
+  y: number;
+  symbol: "star" | "ring";
+}
+
+interface ScatterLabel {
+  x: number;
+  y: number;
+  text: string;
+  bold: boolean;
+  dx: number;
+  dy: number;
+}
+
+/** Edges of the part inside the axes. */
+interface PlotBox {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+}
+
+interface Scatter {
+  id: string;
+  width: number;
+  height: number;
+  narrow: boolean;
+  colours: Colours;
+  x: ScatterAxis;
+  y: ScatterAxis;
+  groups: {name: string; style: SeriesStyle; points: ScatterPoint[]}[];
+  line: {x: number; y: number}[];
+  marks: ScatterMark[];
+  labels: ScatterLabel[];
+  open(name: string): void;
 }
 
 /* Sections */

@@ -20,6 +20,13 @@ export const THEMES = {
 };
 export const SYMBOLS = ["circle", "diamond", "square", "triangle-up"];
 const OUTLINES = ["circle-open", "diamond-open", "square-open", "triangle-up-open"];
+/** The symbols as outlines around 0, as large as those of Plotly with the size 8.
+ * @type {Record<string, string>} */
+const SYMBOL_PATHS = {
+  circle: "M4,0A4,4 0 1,1 0,-4A4,4 0 0,1 4,0Z", diamond: "M5.2,0L0,5.2L-5.2,0L0,-5.2Z", square: "M4,4H-4V-4H4Z",
+  "triangle-up": "M-4.6,2.6H4.6L0,-5.2Z",
+  star: "M0,-12L2.8,-3.9L11.4,-3.7L4.5,1.5L7.1,9.7L0,4.8L-7.1,9.7L-4.5,1.5L-11.4,-3.7L-2.8,-3.9Z",
+};
 export const SCALE = "Cividis";
 export const CIVIDIS = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
   [165, 156, 116], [195, 179, 105], [225, 204, 85], [254, 232, 56]];
@@ -94,4 +101,9 @@ export function seriesStyle(theme, position) {
     symbol: SYMBOLS[Math.floor(position / SAME_SYMBOL) % SYMBOLS.length],
     outline: OUTLINES[Math.floor(position / SAME_SYMBOL) % OUTLINES.length],
   };
+}
+
+/** @param {string} symbol */
+export function symbolPath(symbol) {
+  return SYMBOL_PATHS[symbol];
 }

@@ -46,13 +46,18 @@ export function makeSvg(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Shows the text in `data-tip` of the element under the pointer.
- * @param {SVGSVGElement} svg */
-export function withTips(svg) {
+/** @param {Event} event */
+function tipOf({target}) {
+  return target instanceof SVGElement ? target.dataset.tip ?? "" : "";
+}
+
+/** Shows a text beside the pointer: `data-tip` of the element under it, if nothing else is given.
+ * @param {SVGSVGElement} svg @param {(event: PointerEvent) => string} [textAt] */
+export function withTips(svg, textAt = tipOf) {
   const tip = elementOf("tip");
   /** @param {PointerEvent} event */
   const show = event => {
-    const text = event.target instanceof SVGElement ? event.target.dataset.tip : "";
+    const text = textAt(event);
     tip.hidden = !text;
     if (!text) return;
     tip.textContent = text;

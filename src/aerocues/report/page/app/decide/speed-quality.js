@@ -2,13 +2,15 @@
 
 import {measuredAs} from "./candidates.js";
 import {rankedForPurpose} from "./purposes.js";
-import {safe} from "../basis/elements.js";
+import {seriesStyle} from "../basis/colours.js";
 import {measureNamed, measureOf} from "../basis/entries.js";
 import {duration, isKnown, shown} from "../basis/numbers.js";
-import {spanOf} from "../basis/statistics.js";
-import {logAxis} from "../shell/axes.js";
+import {state} from "../basis/state.js";
+import {openCombination} from "../drawer/combination.js";
 import {colourControl, measureOptions} from "../shell/controls.js";
-import {isSound, pointsByMethod, scatterFrame} from "../shell/points.js";
+import {rangeOf} from "../shell/drawn-axes.js";
+import {isSound, tipLines} from "../shell/points.js";
+import {scatterDrawing} from "../shell/scatter-drawing.js";
 
 const SPEEDS = ["seconds_per_1k_ref_matches", "seconds_per_1k_excess_inliers", "seconds_per_1k_inliers", "seconds_per_1k_matches", "total_seconds"];
 const QUALITIES = ["ref_precision@3", "precision_beyond_chance", "precision", "f1_score", "inliers"];
@@ -30,28 +32,54 @@ export const SPEED_QUALITY = {
     colourControl(),
   ],
   draw(context) {
-    const {entry, shown: rows, option, narrow, colours, theme} = context;
+    const {entry, shown: rows, option, narrow} = context;
     const [x, y] = [measureNamed(entry, option("x")), measureNamed(entry, option("y"))];
     const drawn = rows.filter(a => isKnown(x.values[a]) && isKnown(y.values[a]));
     if (!drawn.length) return {empty: "None of these combinations has both values."};
-    const sound = drawn.filter(a => isSound(entry, a));
-    const front = paretoFront(sound, x, y);
-    const step = {type: "scatter", mode: "lines", name: "not in the table", showlegend: false, hoverinfo: "skip",
-      x: front.map(a => x.values[a]), y: front.map(a => y.values[a]), line: {color: colours.line, width: 1.5}};
-    const winner = winnerIn(entry, drawn);
-    const stars = winner === null ? [] : [starOf(entry, winner, x, y, colours)];
+    const front = paretoFront(drawn.filter(a => isSound(entry, a)), x, y);
+    const scatter = scatterOf(context, drawn, front, x, y);
     return {
-      data: [step, ...pointsByMethod(entry, drawn, option("colour"), x, y, theme), ...stars],
-      height: narrow ? 400 : 455,
-      layout: {
-        ...scatterFrame(measureAxis(x, drawn), measureAxis(y, drawn), narrow),
-        annotations: [...frontLabels(context, drawn, front.filter(a => a !== winner), x, y),
-          ...(winner === null ? [] : [labelOf(context, drawn, winner, x, y)])],
-      },
+      svg: () => scatterDrawing(scatter), height: narrow ? 400 : 455, table: tableOf(scatter),
       note: `Best trade-offs: ${front.map(a => entry.combinations[a]).join(", ")}.`,
     };
   },
 };
+
+/** @param {FigureContext} context @param {number[]} drawn @param {number[]} front @param {Measure} x @param {Measure} y @returns {Scatter} */
+function scatterOf(context, drawn, front, x, y) {
+  const {entry, width, narrow, colours} = context;
+  const place = (/** @type {number} */ a) => ({x: Number(x.values[a]), y: Number(y.values[a])});
+  const axes = {x: axisOf(x, drawn), y: axisOf(y, drawn)};
+  const winner = winnerIn(entry, drawn);
+  const picked = drawn.find(a => entry.combinations[a] === state.get("decide.pick"));
+  /** @type {ScatterMark[]} */
+  const marks = winner === null ? [] : [{...place(winner), symbol: "star"}];
+  if (picked !== undefined) marks.push({...place(picked), symbol: "ring"});
+  const names = frontLabels(context, front.filter(a => a !== winner), x, y, axes).map(label => ({...label, ...place(label.a)}));
+  return {
+    id: "pareto", width, height: narrow ? 400 : 455, narrow, colours, ...axes, marks,
+    line: front.map(place), groups: groupsOf(context, drawn, x, y),
+    labels: winner === null ? names : [...names, {...place(winner), text: entry.combinations[winner], bold: true, dx: 16, dy: 30}],
+    open: openCombination,
+  };
+}
+
+/** One group of points for each method, as the legend names them.
+ * @param {FigureContext} context @param {number[]} drawn @param {Measure} x @param {Measure} y */
+function groupsOf({entry, option, theme}, drawn, x, y) {
+  const methods = entry[/** @type {Code} */ (option("colour"))];
+  const groups = [...new Set(methods)].map((name, i) => ({
+    name, style: seriesStyle(theme, i),
+    points: drawn.filter(a => methods[a] === name).map(a => ({x: Number(x.values[a]), y: Number(y.values[a]),
+      name: entry.combinations[a], hollow: !isSound(entry, a), tip: tipLines(entry, a, x, y).join("\n")})),
+  }));
+  return groups.filter(group => group.points.length);
+}
+
+/** @param {Scatter} scatter @returns {Table} */
+function tableOf({groups}) {
+  return [["series", "x", "y", "value_or_name"], groups.flatMap(group => group.points.map(point => [group.name, point.x, point.y, point.name]))];
+}
 
 /** The answer, or the same features with another matcher, where it is among the points.
  * @param {Entry} entry @param {number[]} drawn */
@@ -61,42 +89,13 @@ function winnerIn(entry, drawn) {
   return a !== null && drawn.includes(a) ? a : null;
 }
 
-/** @param {Entry} entry @param {number} a @param {Measure} x @param {Measure} y @param {Colours} colours @returns {Trace} */
-function starOf(entry, a, x, y, colours) {
-  return {type: "scatter", mode: "markers", name: "not in the table", showlegend: false, x: [x.values[a]], y: [y.values[a]],
-    ids: [safe(entry.combinations[a])], hovertext: [`<b>${safe(entry.combinations[a])}</b><br>the answer`], hoverinfo: "text",
-    marker: {symbol: "star", size: 19, color: colours.ink, line: {width: 1.5, color: colours.surface}}};
-}
-
-/** @param {FigureContext} context @param {number[]} drawn @param {number} a @param {Measure} x @param {Measure} y */
-function labelOf({entry, colours}, drawn, a, x, y) {
-  const place = placeOn(drawn);
-  return {x: place(x, a), y: place(y, a), text: `<b>${safe(entry.combinations[a])}</b>`, showarrow: true, arrowhead: 0, arrowwidth: 1,
-    arrowcolor: colours.ink, ax: 40, ay: 34, font: {size: 12, color: colours.ink}, bgcolor: colours.surface};
-}
-
-/** Places on the axes, logarithmic or not.
- * @param {number[]} drawn @returns {(measure: Measure, a: number) => number} */
-function placeOn(drawn) {
-  /** @type {Map<Measure, (value: number) => number>} */
-  const scales = new Map();
-  return (measure, a) => {
-    const scale = scales.get(measure) ?? (measureAxis(measure, drawn).type === "log" ? Math.log10 : Number);
-    scales.set(measure, scale);
-    return scale(Number(measure.values[a]));
-  };
-}
-
 /** Times and counts that span more than a factor of 10 get a logarithmic axis.
- * @param {Measure} measure @param {number[]} rows @returns {Axis} */
-function measureAxis(measure, rows) {
-  const values = rows.map(a => measure.values[a]).filter(isKnown);
-  const [low, high] = [Math.min(...values), Math.max(...values)];
+ * @param {Measure} measure @param {number[]} rows @returns {ScatterAxis} */
+function axisOf(measure, rows) {
   const better = measure.better ? ` (${measure.better === "lower" ? "less" : "more"} is better)` : "";
-  const title = safe(`${measure.label}${better}`);
   const timed = /seconds/.test(measure.key);
-  if (!(timed || isCount(measure.key)) || low <= 0 || high / low < 10) return {title};
-  return {title, tickangle: 0, ...logAxis(values, timed ? duration : shown)};
+  return {title: `${measure.label}${better}`, words: timed ? duration : shown,
+    range: rangeOf(rows.map(a => measure.values[a]), timed || isCount(measure.key))};
 }
 
 /** @param {string} name */
@@ -118,21 +117,19 @@ function paretoFront(rows, x, y) {
 }
 
 /** Names of a few points on the front, far enough apart not to overlap.
- * @param {FigureContext} context @param {number[]} drawn @param {number[]} front @param {Measure} x @param {Measure} y */
-function frontLabels({entry, narrow, colours, width}, drawn, front, x, y) {
+ * @param {FigureContext} context @param {number[]} front @param {Measure} x @param {Measure} y
+ * @param {{x: ScatterAxis, y: ScatterAxis}} axes */
+function frontLabels({entry, narrow, width}, front, x, y, axes) {
   if (!front.length) return [];
-  const place = placeOn(drawn);
-  const [spanX, spanY] = [x, y].map(measure => spanOf(drawn.map(a => place(measure, a))));
+  const share = (/** @type {Measure} */ measure, /** @type {AxisRange} */ {isLog, low, high}, /** @type {number} */ a) =>
+    ((isLog ? Math.log10 : Number)(Number(measure.values[a])) - low) / (high - low);
   /** @type {(a: number, b: number) => boolean} */
-  const near = (a, b) => Math.abs(place(x, a) - place(x, b)) / (spanX[1] - spanX[0]) * width < 170
-    && Math.abs(place(y, a) - place(y, b)) / (spanY[1] - spanY[0]) * 400 < 26;
+  const near = (a, b) => Math.abs(share(x, axes.x.range, a) - share(x, axes.x.range, b)) * width < 170
+    && Math.abs(share(y, axes.y.range, a) - share(y, axes.y.range, b)) * 400 < 26;
   /** @type {number[]} */
   const picked = [];
   for (const a of [front[0], front[front.length - 1], ...front]) {
     if (picked.length < (narrow ? 3 : 7) && !picked.some(b => near(a, b))) picked.push(a);
   }
-  return picked.map((a, i) => ({
-    x: place(x, a), y: place(y, a), text: safe(entry.combinations[a]), showarrow: true, arrowhead: 0, arrowwidth: 1,
-    arrowcolor: colours.line, ax: x.better === "lower" ? -30 : 30, ay: i % 2 ? -34 : -16, font: {size: 10, color: colours.muted},
-  }));
+  return picked.map((a, i) => ({a, text: entry.combinations[a], bold: false, dx: x.better === "lower" ? -30 : 30, dy: i % 2 ? -34 : -16}));
 }

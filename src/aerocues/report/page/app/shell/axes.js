@@ -30,7 +30,7 @@ const FEWEST_TICKS = 3;
 
 /** 1, 10, 100, .. or, between values that are near each other, finer steps: as coarse as leaves three ticks between them.
  * @param {number} low @param {number} high */
-function logTicks(low, high) {
+export function logTicks(low, high) {
   /** @type {number[]} */
   const powers = [];
   for (let power = Math.floor(Math.log10(low)) - 1; power <= Math.ceil(Math.log10(high)); power += 1) powers.push(power);

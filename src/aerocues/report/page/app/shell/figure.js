@@ -40,7 +40,7 @@ export function addFigure(parent, spec) {
     plot, note);
   /** @type {Figure} */
   const figure = {
-    ...rest, element, plot, noteElement: note, stale: true, near: false, width: 0,
+    ...rest, element, plot, noteElement: note, stale: true, waits: false, near: false, width: 0,
     controls: Object.fromEntries(controls.map((control, i) => [specs[i].name, control])),
   };
   parent.append(element);
@@ -70,11 +70,15 @@ function describeFigure(figure, context) {
 /** @param {Figure} figure */
 export function drawFigure(figure) {
   const width = Math.floor(figure.plot.clientWidth);
-  if (!width || !window.Plotly) return;
+  if (!width) return;
   Object.assign(figure, {stale: false, width});
   for (const control of Object.values(figure.controls)) control.refresh();
   const context = figureContext(figure, width, themeName());
-  const drawn = describeFigure(figure, context);
+  const wanted = describeFigure(figure, context);
+  const lacks = wanted.empty === undefined && !wanted.svg && !window.Plotly;
+  figure.waits = lacks && withoutPlotly === null;
+  if (figure.waits) return;
+  const drawn = lacks ? {empty: withoutPlotly ?? ""} : wanted;
   figure.element.classList.toggle("empty", Boolean(drawn.empty));
   showNote(figure, drawn);
   if (drawn.empty !== undefined) {
@@ -212,6 +216,7 @@ async function saveFigure(figure, format) {
   const stem = fileStem(context.entry.name, figure.title);
   if (format === "CSV") return saveCsv(stem, ...(drawn.svg ? drawn.table : tableOfTraces(drawn.data)));
   if (drawn.svg) return saveDrawing(drawn.svg(), stem, format);
+  if (!window.Plotly) return announce(withoutPlotly ?? "The figure is not drawn yet.");
   const layout = fullLayout(drawn, context);
   const kind = format.toLowerCase();
   const url = await Plotly.toImage({data: drawn.data, layout, config: CONFIG},
@@ -281,10 +286,22 @@ function concerns(key, figure) {
   return !key.includes(".") || key.startsWith(`${figure.id}.`);
 }
 
+/** Why there is no Plotly, once that is known.
+ * @type {string | null} */
+let withoutPlotly = null;
+
+/** Draws the figures that waited for Plotly; without it, says why they stay empty.
+ * @param {string | null} [reason] */
+export function drawWaiting(reason = null) {
+  withoutPlotly = reason;
+  for (const figure of figures.filter(each => each.waits)) Object.assign(figure, {stale: true, waits: false});
+  drawStale();
+}
+
 let drawing = false;
 
 export function drawStale() {
-  if (drawing || !window.Plotly) return;
+  if (drawing) return;
   const waiting = figures.filter(figure => figure.stale && figure.near && figure.plot.clientWidth);
   if (!waiting.length) return;
   const next = waiting.find(isInWindow) ?? waiting[0];

@@ -41,7 +41,13 @@ export function pointsByMethod(entry, rows, code, x, y, theme) {
 
 /** @param {Entry} entry @param {number} a @param {...Measure} measures */
 function pointText(entry, a, ...measures) {
-  return `<b>${safe(entry.combinations[a])}</b>${measures.map(measure =>
-    `<br>${safe(measure.label)}: ${safe(valueText(measure.key, measure.values[a]))}`).join("")}`
-    + `<br>CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, success ${percent(entry.score.success_rate[a])}`;
+  const [name, ...lines] = tipLines(entry, a, ...measures).map(safe);
+  return [`<b>${name}</b>`, ...lines].join("<br>");
+}
+
+/** What is told of a point: its name, its values, and how good it is.
+ * @param {Entry} entry @param {number} a @param {...Measure} measures */
+export function tipLines(entry, a, ...measures) {
+  return [entry.combinations[a], ...measures.map(measure => `${measure.label}: ${valueText(measure.key, measure.values[a])}`),
+    `CUES ${fixed(entry.score.score[a])}, rank ${shown(entry.score.rank[a])}, success ${percent(entry.score.success_rate[a])}`];
 }
