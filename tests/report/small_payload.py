@@ -93,10 +93,11 @@ def small_payload() -> dict[str, Any]:
 def map_of(entry: dict[str, Any]) -> dict[str, Any]:
     """The images of an entry, side by side."""
     names = ["a.png", *(pair["image_2"] for pair in entry["pairs"])]
-    images = [
-        {"name": name, "x": 10.0 * place, "y": float(place % 3), "src": PIXEL}
-        for place, name in enumerate(names)
-    ]
+    images = []
+    for place, name in enumerate(names):
+        x, y = 10.0 * place, float(place % 3)
+        ground = [[x - 8, y + 6], [x + 8, y + 6], [x + 8, y - 6], [x - 8, y - 6]]
+        images.append({"name": name, "x": x, "y": y, "src": PIXEL, "ground": ground})
     return {"entry": entry["name"], "known": "gps", "images": images}
 
 

@@ -57,6 +57,8 @@ def test_the_answer_is_on_the_first_screen(open_report: Open, width: int) -> Non
 def test_a_pair_on_the_map_opens(open_report: Open) -> None:
     opened = open_report()
     opened.figure("map")
+    images = opened.page.evaluate("JSON.parse(payload.textContent).maps[0].images.length")
+    assert opened.page.locator("#figure-map .footprints polygon").count() == images
     edge = opened.page.locator("#figure-map .edge").first
     edge.focus()
     opened.page.keyboard.press("Enter")

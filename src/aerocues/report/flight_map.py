@@ -1,4 +1,4 @@
-"""Where the images of a flight were taken, with small pictures of them."""
+"""Where the images of a flight were taken and what they show, with small pictures of them."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from aerocues.datasets.gps import east_north_up
 from aerocues.datasets.usable_gps import UsableGps
 from aerocues.errors import AerocuesError, ImageError
 from aerocues.report.entry import ReportEntry
+from aerocues.report.footprints import footprint
 from aerocues.report.reopening import context_of
 from aerocues.report.thumbnails import thumbnail
 
@@ -61,17 +62,20 @@ def flight_map(found: ReportEntry, moved: Sequence[str] = ()) -> FlightMap:
         dataset = context_of(found, moved).dataset
     except AerocuesError as error:
         return FlightMap(notes=[f"{found.name}: no map: {error}"])
-    own = set(names)
-    images = [image for image in dataset.images if image.name in own]
+    images = dataset.images
+    if len(images) > MOST_IMAGES:
+        own = set(names)
+        images = [image for image in images if image.name in own]
     known, positions = _positions(images)
+    grounds = _footprints(images, positions) if known != "order" else [None] * len(images)
     return FlightMap(
         {
             "entry": found.name,
             "known": known,
             "images": [
-                {"name": image.name, "x": x, "y": y, "src": source}
-                for image, (x, y), source in zip(
-                    images, positions.tolist(), _pictures(images), strict=True
+                {"name": image.name, "x": x, "y": y, "src": source, "ground": ground}
+                for image, (x, y), source, ground in zip(
+                    images, positions.tolist(), _pictures(images), grounds, strict=True
                 )
             ],
         }
@@ -92,6 +96,12 @@ def _positions(images: Sequence[Image]) -> tuple[str, Positions]:
     if len(places) == len(images):
         return "gps", east_north_up(places)[:, :2]
     return "order", _in_rows(len(images))
+
+
+def _footprints(images: Sequence[Image], positions: Positions) -> list[list[list[float]] | None]:
+    """Corners of the images on the ground, as far as they are known; see `footprints`."""
+    corners = [footprint(*each) for each in zip(images, positions.tolist(), strict=True)]
+    return [None if each is None else each.round(1).tolist() for each in corners]
 
 
 def _in_rows(count: int) -> Positions:

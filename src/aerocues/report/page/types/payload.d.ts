@@ -299,11 +299,12 @@ interface StageTimes {
   rank_correlation: Value;
 }
 
-/** Where images were taken: `x` to the east, `y` to the north; metres, unless only their order is known. */
+/** Where images were taken: `x` to the east, `y` to the north; metres, unless only their order is known. `ground` has the
+ * corners of what an image shows, from its top left one clockwise, where that is known. */
 interface FlightMap {
   entry: string;
   known: "truth" | "gps" | "order";
-  images: {name: string; x: number; y: number; src: string | null}[];
+  images: {name: string; x: number; y: number; src: string | null; ground: [number, number][] | null}[];
 }
 
 interface Thumbnail {

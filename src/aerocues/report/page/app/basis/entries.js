@@ -131,7 +131,8 @@ export function firstColumn(entry, names) {
 export function pairLabel(entry, position) {
   const {sequence, image_1: first, image_2: second} = entry.pairs[position];
   const leaf = (/** @type {string} */ name) => name.split("/").pop();
-  return `${sequence ? `${sequence}: ` : ""}${leaf(first)} – ${leaf(second)}`;
+  const several = remember(entry, "several sequences", () => new Set(entry.pairs.map(pair => pair.sequence)).size > 1);
+  return `${sequence && several ? `${sequence}: ` : ""}${leaf(first)} – ${leaf(second)}`;
 }
 
 /** @param {Entry} entry */

@@ -39,7 +39,10 @@ export function duration(seconds) {
   if (!isKnown(seconds)) return NONE;
   if (seconds < 1e-3) return `${shown(1e6 * seconds, 2)} µs`;
   if (seconds < 1) return `${shown(1e3 * seconds)} ms`;
-  return seconds < 120 ? `${shown(seconds)} s` : `${shown(seconds / 60)} min`;
+  if (seconds < 120) return `${shown(seconds)} s`;
+  if (seconds >= 600) return `${THOUSANDS.format(Math.round(seconds / 60))} min`;
+  const whole = Math.round(seconds);
+  return `${Math.floor(whole / 60)} min${whole % 60 ? ` ${whole % 60} s` : ""}`;
 }
 
 /** @param {number} number @param {string} noun @param {string} [plural] */
@@ -62,7 +65,8 @@ export function listed(words, last = "and") {
 
 /** @type {Record<string, string>} */
 const LABELS = {
-  score: "CUES", f1_score: "F1 score", points_3d: "3D points",
+  "ref_matches@3": "right matches", "ref_precision@3": "share of right matches", "ref_matching_score@3": "right matches / keypoints",
+  seconds_per_1k_ref_matches: "seconds per 1k right matches", score: "CUES", f1_score: "F1 score", points_3d: "3D points",
   f1_beyond_chance: "F1 beyond chance", total_seconds: "total time", detect_seconds: "detection time",
   describe_seconds: "description time", match_seconds: "matching time", verify_seconds: "verification time",
   position_rmse: "position RMSE", position_error_share: "position error / extent",
@@ -76,7 +80,7 @@ const LABELS = {
 export function labelOf(name) {
   if (Object.hasOwn(LABELS, name)) return LABELS[name];
   const [stem, threshold] = name.split("@");
-  const words = stem.replace(/^gt_/, "true ").replace(/auc$/, "AUC").replaceAll("_", " ");
+  const words = stem.replace(/^gt_/, "true ").replace(/^ref_matches$/, "right matches").replace(/^ref_precision$/, "share of right matches").replace(/auc$/, "AUC").replaceAll("_", " ");
   if (!threshold) return words;
   return `${words} at ${threshold}${stem.startsWith("pose") ? "°" : " px"}`;
 }

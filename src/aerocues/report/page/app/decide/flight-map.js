@@ -17,6 +17,7 @@ import {rankedForPurpose} from "./purposes.js";
 const FEWEST_MATCHES = 15;
 const WEAK = "#d7263d";
 const MARGIN = 34;
+const GROUND_MARGIN = 6;
 const LEGEND = 22;
 /** @typedef {{position: number, from: number, to: number, matches: number | null, failed: boolean}} Edge
  * @typedef {{x: number, y: number}[]} Places */
@@ -36,7 +37,7 @@ function shownOnMap(entry) {
 /** @type {FigureSpec} */
 export const FLIGHT_MAP = {
   id: "map", title: "The flight", showsAnswer: true, isOperated: true,
-  read: "Images where they were taken, and measured pairs, brighter with more matches. Click a pair to see it.",
+  read: "Images where they were taken, the ground that they show where that is known, and measured pairs, brighter with more matches. Click a pair to see it.",
   available: entry => (mapOf(entry) ? true : "No map: the images are not one flight, or could not be opened again."),
   draw(context) {
     const {entry, width} = context;
@@ -77,18 +78,29 @@ function edgesOf(entry, flight, column, a) {
   });
 }
 
-/** Places of the images on the drawing, north up, to one scale.
- * @param {FlightMap} flight @param {number} width @param {number} height @returns {Places} */
-function placesOf({images}, width, height) {
-  const [xs, ys] = [spanOf(images.map(({x}) => x)), spanOf(images.map(({y}) => y))];
-  const scale = Math.min((width - 2 * MARGIN) / (xs[1] - xs[0]), (height - 2 * MARGIN - LEGEND) / (ys[1] - ys[0]));
+/** From metres to the east and north to the drawing, north up, to one scale.
+ * @param {FlightMap} flight @param {number} width @param {number} height @returns {(place: [number, number]) => {x: number, y: number}} */
+function placing({images}, width, height) {
+  const all = images.flatMap(({x, y, ground}) => [[x, y], ...(ground ?? [])]);
+  const [xs, ys] = [spanOf(all.map(([x]) => x)), spanOf(all.map(([, y]) => y))];
+  const margin = images.some(({ground}) => ground) ? GROUND_MARGIN : MARGIN;
+  const scale = Math.min((width - 2 * margin) / (xs[1] - xs[0]), (height - 2 * margin - LEGEND) / (ys[1] - ys[0]));
   const [cx, cy] = [(xs[0] + xs[1]) / 2, (ys[0] + ys[1]) / 2];
-  return images.map(({x, y}) => ({x: width / 2 + (x - cx) * scale, y: (height - LEGEND) / 2 - (y - cy) * scale}));
+  return ([x, y]) => ({x: width / 2 + (x - cx) * scale, y: (height - LEGEND) / 2 - (y - cy) * scale});
+}
+
+/** What the images show of the ground: darker where more of them do.
+ * @param {FlightMap} flight @param {(place: [number, number]) => {x: number, y: number}} at @param {Colours} colours */
+function footprints({images}, at, colours) {
+  return makeSvg("g", {class: "footprints"}, images.filter(({ground}) => ground).map(({ground, name}) => makeSvg("polygon", {
+    points: (ground ?? []).map(at).map(({x, y}) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" "), "data-tip": name,
+    fill: colours.ink, "fill-opacity": 0.05, stroke: colours.line, "stroke-width": 0.7})));
 }
 
 /** @param {FigureContext} context @param {FlightMap} flight @param {Edge[]} edges @param {string} column @param {number} height */
 function drawing({entry, width, colours}, flight, edges, column, height) {
-  const places = placesOf(flight, width, height);
+  const at = placing(flight, width, height);
+  const places = flight.images.map(({x, y}) => at([x, y]));
   const [, most] = boundsOf(edges.map(edge => edge.matches ?? 0));
   const side = Math.min(44, Math.max(8, 0.8 * nearest(places)));
   const lines = [...edges].sort((e, f) => Number(isWeak(e)) - Number(isWeak(f))).map(edge => {
@@ -110,7 +122,7 @@ function drawing({entry, width, colours}, flight, edges, column, height) {
       : makeSvg("circle", {cx: x, cy: y, r: 3.5, fill: colours.ink, "data-tip": tip(i)});
   });
   return makeSvg("svg", {class: "main-svg", width, height, viewBox: `0 0 ${width} ${height}`, "font-family": FONT, "font-size": 11, fill: colours.ink},
-    makeSvg("rect", {width, height, fill: colours.surface}), lines, spots, legend(colours, most, height));
+    makeSvg("rect", {width, height, fill: colours.surface}), footprints(flight, at, colours), lines, spots, legend(colours, most, height));
 }
 
 /** The smallest usual distance between neighbours: pictures must not cover each other.

@@ -74,7 +74,7 @@ function rankByRace(entry) {
   const top = race.ranked[0]?.score || 1;
   return passingNames(names).map((name, place) => {
     const row = scores.get(name);
-    const text = built.includes(name) ? modelText(entry, name) : `${percent(row?.probability ?? null)} likely`;
+    const text = built.includes(name) ? modelText(entry, name) : `${fixed(row?.score ?? null)}, ${percent(row?.probability ?? null)} likely`;
     return candidate(entry, name, built.includes(name) ? 1 - 0.02 * place : Number(row?.score ?? 0) / top * 0.9, text);
   });
 }

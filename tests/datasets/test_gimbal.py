@@ -1,0 +1,42 @@
+"""What a drone wrote of the view of a photo."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aerocues.datasets.gimbal import GimbalView, gimbal_view
+
+ATTRIBUTES = (
+    'drone-dji:RelativeAltitude="+39.80" drone-dji:GimbalRollDegree="+0.00" '
+    'drone-dji:GimbalYawDegree="-140.00" drone-dji:GimbalPitchDegree="-89.90"'
+)
+ELEMENTS = (
+    "<drone-dji:RelativeAltitude>39.8</drone-dji:RelativeAltitude>"
+    "<drone-dji:GimbalRollDegree>0</drone-dji:GimbalRollDegree>"
+    "<drone-dji:GimbalYawDegree>-140</drone-dji:GimbalYawDegree>"
+    "<drone-dji:GimbalPitchDegree>-89.9</drone-dji:GimbalPitchDegree>"
+)
+
+
+@pytest.mark.parametrize("packet", [ATTRIBUTES, ELEMENTS])
+def test_height_and_angles_are_read(packet: str, tmp_path: Path) -> None:
+    file = tmp_path / "photo.jpg"
+    file.write_bytes(b"\xff\xd8..." + packet.encode() + b"\xff\x00")
+    assert gimbal_view(file) == GimbalView(39.8, -89.9, -140.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [
+        "",
+        ATTRIBUTES.replace("GimbalYawDegree", "FlightYawDegree"),
+        ATTRIBUTES.replace("+39.80", "-0.40"),
+        ATTRIBUTES.replace("+39.80", "high"),
+    ],
+)
+def test_what_lacks_a_value_has_no_view(packet: str, tmp_path: Path) -> None:
+    file = tmp_path / "photo.jpg"
+    file.write_bytes(packet.encode())
+    assert gimbal_view(file) is None
