@@ -72,6 +72,23 @@ def test_python_gives_the_same_ranking(call: Call, finished: Path) -> None:
     assert ranking.frame("combination").to_dicts() == facts["ranking"]
 
 
+def test_others_are_tested_against_a_chosen_one_and_columns_chosen(
+    call: Call, finished: Path, tmp_path: Path
+) -> None:
+    one = "AKAZE-AKAZE-HAM-BF"
+    target = tmp_path / "short.tex"
+    options = ("--resamples", 20, "--against", one)
+    told = json.loads(call("score", finished, *options, "--json").out)
+    assert told["settings"]["against"] == one
+    names = ("--columns", "rank,combination,p_value")
+    answer = call("score", finished, *options, "--latex", target, *names)
+    # With three pairs there is no test.
+    assert f"too few pairs for a test against {one}" in " ".join(answer.out.split())
+    assert "rank & combination & p\\_value" in target.read_text()
+    assert call("score", finished, *options, "--latex", target, "--columns", "speed").code == 2
+    assert call("score", finished, "--against", "ORB").code == 2
+
+
 def test_choices_change_what_is_scored(call: Call, finished: Path) -> None:
     options = ["--criteria", CRITERIA, "--weights", "entropy", "--aggregation", "trimmed"]
     options += ["--alpha", "0.25", "--failures", "omit", "--interval", "pairwise"]

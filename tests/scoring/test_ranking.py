@@ -121,6 +121,7 @@ def test_settings_tell_everything() -> None:
         "interval": "joint",
         "top_k": 3,
         "test": "wilcoxon",
+        "against": ranking.frame()["alternative"][0],
     }
 
 

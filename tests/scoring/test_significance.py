@@ -11,7 +11,7 @@ from aerocues.errors import ArgumentError
 from aerocues.scoring import DecisionTable, Scores, ScoreSettings, score
 from aerocues.scoring.bootstrap import bootstrap
 from aerocues.scoring.per_repeat import scores_of_repeats, scores_of_units
-from aerocues.scoring.significance import ComparisonsWithBest, compare_with_best, holm
+from aerocues.scoring.significance import Comparisons, compare_with_one, holm
 from tests.scoring.tables import random_table, table_of
 
 NAN = float("nan")
@@ -23,9 +23,9 @@ def compare(
     settings: ScoreSettings = LINEAR,
     resamples: int = 200,
     test: str = "bootstrap",
-) -> ComparisonsWithBest:
+) -> Comparisons:
     scores = score(table, settings)
-    return compare_with_best(scores, bootstrap(scores, resamples), test)
+    return compare_with_one(scores, bootstrap(scores, resamples), test)
 
 
 def test_holm_by_hand() -> None:
@@ -70,9 +70,9 @@ def expected_by(test: object, scores: Scores, values: NDArray[np.float64]) -> ND
 def test_on_a_linear_score_it_is_the_paired_t_test(seed: int) -> None:
     table = held_bounds(seed, alternatives=5, repeats=24)
     scores = score(table, LINEAR)
-    found = compare_with_best(scores, bootstrap(scores, 4000), "bootstrap")
+    found = compare_with_one(scores, bootstrap(scores, 4000), "bootstrap")
     expected = expected_by(ttest_rel, scores, table.values[:, :, 0])
-    assert found.best == scores.best
+    assert found.one == scores.best
     assert found.test == "bootstrap"
     np.testing.assert_allclose(found.p_value, expected, rtol=0.3, atol=0.003)
 
@@ -81,7 +81,7 @@ def test_on_a_linear_score_it_is_the_paired_t_test(seed: int) -> None:
 def test_wilcoxon_agrees_with_scipy(seed: int) -> None:
     table = random_table(seed, repeats=15)
     scores = score(table)
-    found = compare_with_best(scores, bootstrap(scores, 10), "wilcoxon")
+    found = compare_with_one(scores, bootstrap(scores, 10), "wilcoxon")
     expected = expected_by(wilcoxon, scores, scores_of_repeats(scores))
     np.testing.assert_allclose(found.p_value, expected)
 
@@ -89,18 +89,18 @@ def test_wilcoxon_agrees_with_scipy(seed: int) -> None:
 def test_wilcoxon_is_on_blocks() -> None:
     table = table_of(random_table(0, repeats=12).values, blocks=[0, 1, 2, 3, 4, 5] * 2)
     scores = score(table)
-    found = compare_with_best(scores, bootstrap(scores, 10), "wilcoxon")
+    found = compare_with_one(scores, bootstrap(scores, 10), "wilcoxon")
     expected = expected_by(wilcoxon, scores, scores_of_units(scores))
     np.testing.assert_allclose(found.p_value, expected)
 
 
 def test_differences_are_those_of_the_scores() -> None:
     scores = score(random_table(0))
-    found = compare_with_best(scores, bootstrap(scores, 20))
+    found = compare_with_one(scores, bootstrap(scores, 20))
     np.testing.assert_allclose(found.difference, scores.scores.max() - scores.scores)
-    assert found.difference[found.best] == 0
-    assert np.isnan(found.p_value[found.best])
-    assert found.best not in found.indistinguishable()
+    assert found.difference[found.one] == 0
+    assert np.isnan(found.p_value[found.one])
+    assert found.one not in found.indistinguishable()
     np.testing.assert_array_equal(found.indistinguishable(), np.flatnonzero(found.p_value >= 0.05))
 
 
@@ -110,13 +110,13 @@ def test_identical_alternatives_cannot_be_told_apart(test: str) -> None:
     best = score(table_of(values)).best
     values[[3, 17, 38]] = values[best]
     found = compare(table_of(values), ScoreSettings(), test=test)
-    same = {3, 17, 38, best} - {found.best}
+    same = {3, 17, 38, best} - {found.one}
     assert set(found.p_value[sorted(same)]) == {1.0}
 
 
 def test_what_is_better_in_every_repeat_is_found() -> None:
     found = compare(held_bounds(0, alternatives=5, repeats=40, spread=0.01))
-    assert found.best == 0
+    assert found.one == 0
     assert found.indistinguishable().tolist() == []
 
 
@@ -127,7 +127,7 @@ def test_few_repeats_in_common_tell_little() -> None:
     values[2, 6:] = NAN
     values[3, 4:] = NAN
     found = compare(table_of(values, failed=np.zeros(values.shape, dtype=bool)))
-    assert found.best == 0
+    assert found.one == 0
     assert found.p_value[1] < 1e-6
     assert found.p_value[1] < found.p_value[2]
     assert np.isnan(found.p_value[3])
@@ -142,8 +142,8 @@ def test_a_best_that_loses_repeat_by_repeat_is_not_told_from_the_other() -> None
     first = second - 0.01
     first[:4] = 1.0
     scores = score(table_of(np.stack([first, second])[:, :, None]), ScoreSettings(alpha=1))
-    found = compare_with_best(scores, bootstrap(scores, 200), "wilcoxon")
-    assert found.best == 0
+    found = compare_with_one(scores, bootstrap(scores, 200), "wilcoxon")
+    assert found.one == 0
     assert found.indistinguishable().tolist() == [1]
 
 
@@ -154,9 +154,9 @@ def test_false_alarms_of_two_alike() -> None:
         values = np.random.default_rng(seed).normal(size=(6, 15, 3))
         values[2:] -= np.linspace(2, 4, 4)[:, None, None]
         scores = score(table_of(values))
-        found = compare_with_best(scores, bootstrap(scores, 200))
-        assert found.best in (0, 1)
-        alarms += int(found.p_value[1 - found.best] < 0.05)
+        found = compare_with_one(scores, bootstrap(scores, 200))
+        assert found.one in (0, 1)
+        alarms += int(found.p_value[1 - found.one] < 0.05)
     # 5 % of 150 are 7.5, with a standard deviation of 2.7.
     assert alarms <= 14
 
@@ -179,4 +179,18 @@ def test_of_one_unit_nothing_can_be_told() -> None:
 def test_an_unknown_test() -> None:
     scores = score(random_table(0))
     with pytest.raises(ArgumentError, match="bootstrap, wilcoxon"):
-        compare_with_best(scores, bootstrap(scores, 5), "sign")
+        compare_with_one(scores, bootstrap(scores, 5), "sign")
+
+
+def test_others_are_compared_with_a_chosen_one() -> None:
+    """Of three that differ by ever the same, the middle one is worse than one, better than one."""
+    noise = np.random.default_rng(0).normal(0, 0.01, (3, 30, 1))
+    table = table_of(np.array([0.2, 0.5, 0.8])[:, None, None] + noise)
+    scores = score(table, LINEAR)
+    resampled = bootstrap(scores, 100)
+    middle = table.alternatives[1]
+    found = compare_with_one(scores, resampled, against=middle)
+    assert (found.one, found.surpassed().tolist(), found.surpassing().tolist()) == (1, [0], [2])
+    assert compare_with_one(scores, resampled).surpassing().tolist() == []
+    with pytest.raises(ArgumentError, match="against"):
+        compare_with_one(scores, resampled, against="nobody")

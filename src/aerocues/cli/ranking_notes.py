@@ -80,21 +80,34 @@ def _drawn(ranking: Ranking) -> str:
 
 def _significance(ranking: Ranking) -> list[str]:
     best = ranking.scores.table.alternatives[ranking.scores.best]
+    against = ranking.against
     alike, untested = ranking.indistinguishable(), ranking.untested()
     lines = []
+    if against != best:
+        lines += _around(ranking)
     if alike:
         lines.append(
-            f"not significantly different from {best} on these pairs: {_some(alike, NAMED)}"
+            f"not significantly different from {against} on these pairs: {_some(alike, NAMED)}"
         )
     if untested:
-        lines.append(f"too few pairs for a test against {best}: {_some(untested, NAMED)}")
+        lines.append(f"too few pairs for a test against {against}: {_some(untested, NAMED)}")
     others = len(ranking.scores.order) - 1
     if not others:
         lines.append("The score compares combinations: measure more than one.")
-    if others and not alike and not untested:
+    if against == best and others and not alike and not untested:
         lines.append(f"{best} is significantly better than all others (corrected p < 0.05)")
     if not ranking.scores.table.by_repeat.all():
         lines.append(
             "Each combination was reconstructed once; the intervals exclude that variation."
         )
     return lines
+
+
+def _around(ranking: Ranking) -> list[str]:
+    """What is significantly better and worse than a chosen combination."""
+    sides = (("better", ranking.surpassing()), ("worse", ranking.surpassed()))
+    return [
+        f"significantly {side} than {ranking.against} (corrected p < 0.05): {_some(names, NAMED)}"
+        for side, names in sides
+        if names
+    ]

@@ -56,7 +56,7 @@ def facts(ranking: Ranking, measured: MeasuredTable) -> dict[str, Any]:
             "preset": measured.preset.name,
             **ranking.settings(),
         },
-        "indistinguishable_from_best": ranking.indistinguishable(),
+        "indistinguishable": ranking.indistinguishable(),
         "untested": ranking.untested(),
         "unscored": ranking.unscored(),
     }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from aerocues.arguments import check_choice
 from aerocues.cli.limit_options import (
     LicenceOption,
     Limits,
@@ -32,6 +33,7 @@ from aerocues.cli.scoring import (
     WeightsOption,
 )
 from aerocues.defaults import RESAMPLES, TOP_K
+from aerocues.scoring.settings import names_of
 
 if TYPE_CHECKING:
     from aerocues.scoring.ranking import Ranking
@@ -42,7 +44,7 @@ PRINTED = ("rank", "combination", "score", "score_low", "score_high", "rank_low"
 # What an objective and limits leave without effect.
 OF_CUES = {
     *("preset", "criteria", "failures", "alpha", "weights", "aggregation", "reconstruction"),
-    *("interval", "test", "top_k"),
+    *("interval", "test", "against", "top_k", "columns"),
 }
 
 
@@ -76,9 +78,15 @@ def score(
         Interval,
         typer.Option(help="Score interval: joint resampling, or pairwise as in the thesis."),
     ] = Interval.JOINT,
-    test: Annotated[
-        Test, typer.Option(help="Significance test against the best.")
-    ] = Test.BOOTSTRAP,
+    test: Annotated[Test, typer.Option(help="Significance test.")] = Test.BOOTSTRAP,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Combination that the others are tested against, such as your own; by default the "
+            "best.",
+        ),
+    ] = None,
     top: TopOption = 15,
     top_k: Annotated[
         int,
@@ -96,6 +104,13 @@ def score(
     ] = None,
     markdown: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the best N as a Markdown table.")
+    ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            help="Columns of these two, such as rank,combination,score,p_value (names as in CSV).",
+        ),
     ] = None,
     max_seconds_per_image: MaxSecondsOption = None,
     max_memory: MaxMemoryOption = None,
@@ -136,8 +151,9 @@ def score(
             interval=interval.value,
             test=test.value,
             top_k=top_k,
+            against=against.upper() if against else None,
         )
-    _write(ranking, targets, top)
+    _write(ranking, targets, top, columns)
     if STANDARD_OUTPUT in targets.values():
         return
     if as_json:
@@ -182,10 +198,13 @@ def _for_purpose(
         print_choice(found, top)
 
 
-def _write(ranking: Ranking, targets: dict[str, str | None], top: int) -> None:
+def _write(ranking: Ranking, targets: dict[str, str | None], top: int, columns: str | None) -> None:
     frame = ranking.frame("combination")
     criteria = ranking.scores.table.criterion_names
-    printed = frame.select(*PRINTED, "success_rate", *criteria).head(top)
+    names = names_of(columns) if columns else [*PRINTED, "success_rate", *criteria]
+    for name in names:
+        check_choice("columns", name, frame.columns)
+    printed = frame.select(names).head(top)
     for form, target in targets.items():
         if target is not None:
             write_table(frame if form == "csv" else printed, target, form, "combination")

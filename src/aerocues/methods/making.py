@@ -114,7 +114,9 @@ class ArrayDescriptor:
         if not isinstance(raw, Features):
             raise TypeError(f"a descriptor returns Features, not {type(raw).__name__}")
         if raw.descriptors.dtype != self._dtype:
-            raise TypeError(f"descriptors of {raw.descriptors.dtype}, declared as {self._dtype}")
+            packed = "; pack bits: numpy.packbits(bits, axis=1)"
+            told = f"descriptors of {raw.descriptors.dtype}, declared as {self._dtype}"
+            raise TypeError(told + (packed if raw.descriptors.dtype == bool else ""))
         contiguous: Any = np.ascontiguousarray(raw.descriptors)
         return finite_features(raw.keypoints, contiguous)
 

@@ -35,6 +35,7 @@ def score(
     interval: Interval = "joint",
     test: str = "bootstrap",
     top_k: int = TOP_K,
+    against: str | None = None,
 ) -> Ranking:
     """Rank the combinations of measured results by CUES.
 
@@ -67,9 +68,12 @@ def score(
     interval : {"joint", "pairwise"}
         Interval of the score: from the joint resamples, or the thesis's.
     test : {"bootstrap", "wilcoxon"}
-        Significance test against the best combination.
+        Significance test.
     top_k : int
         Places that count for ``probability_top``.
+    against : str, optional
+        The combination that the others are tested against, such as one of your own; the best by
+        default.
 
     Returns
     -------
@@ -95,6 +99,7 @@ def score(
         test=test,
         top_k=top_k,
         noun="combination",
+        against=against,
     )
 
 

@@ -168,7 +168,7 @@ def score_jointly(
     ----------
     first, second : Entry
     test : {"bootstrap", "wilcoxon"}
-        As in `significance.compare_with_best`.
+        As in `significance.compare_with_one`.
     resamples, seed : int
         See `bootstrap.bootstrap`.
 

@@ -18,7 +18,7 @@ from aerocues.scoring.bootstrap import Bootstrap, bootstrap
 from aerocues.scoring.cues import Scores, score
 from aerocues.scoring.per_repeat import interval_of_repeats
 from aerocues.scoring.settings import ScoreSettings
-from aerocues.scoring.significance import LEVEL, ComparisonsWithBest, compare_with_best
+from aerocues.scoring.significance import LEVEL, Comparisons, compare_with_one
 from aerocues.scoring.table import DecisionTable
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Ranking:
     ----------
     scores : Scores
     resampled : Bootstrap
-    comparisons : ComparisonsWithBest
+    comparisons : Comparisons
     seed : int
     interval : {"joint", "pairwise"}
         Score interval: joint resampling of all alternatives, or pairwise as in the thesis.
@@ -55,7 +55,7 @@ class Ranking:
 
     scores: Scores
     resampled: Bootstrap
-    comparisons: ComparisonsWithBest
+    comparisons: Comparisons
     seed: int
     interval: Interval
     top_k: int
@@ -90,7 +90,7 @@ class Ranking:
         pl.DataFrame
             `name`; ``rank``, ``rank_low``, ``rank_high`` and ``score``, ``score_low``,
             ``score_high`` (95 %); ``probability_best``, ``probability_top``; ``p_value`` of the
-            difference from the best (corrected; null for the best); ``success_rate``;
+            difference from `against` (corrected; null for itself); ``success_rate``;
             number of measured ``repeats``; and the mean of each criterion over its valid repeats.
 
         Raises
@@ -147,15 +147,29 @@ class Ranking:
         lacking = np.flatnonzero(np.isnan(scores.scores))
         return [scores.table.alternatives[position] for position in lacking]
 
+    @property
+    def against(self) -> str:
+        """The alternative that the others are tested against: the best, or the chosen one."""
+        return self.scores.table.alternatives[self.comparisons.one]
+
     def indistinguishable(self, level: float = LEVEL) -> list[str]:
-        """Alternatives not significantly different from the best, sorted by score."""
-        kept = set(self.comparisons.indistinguishable(level).tolist())
-        names = self.scores.table.alternatives
-        return [names[position] for position in self.scores.order if int(position) in kept]
+        """Alternatives not significantly different from `against`, sorted by score."""
+        return self._named(self.comparisons.indistinguishable(level))
+
+    def surpassed(self, level: float = LEVEL) -> list[str]:
+        """Alternatives significantly worse than `against`, sorted by score."""
+        return self._named(self.comparisons.surpassed(level))
+
+    def surpassing(self, level: float = LEVEL) -> list[str]:
+        """Alternatives significantly better than `against`, sorted by score."""
+        return self._named(self.comparisons.surpassing(level))
 
     def untested(self) -> list[str]:
-        """Alternatives with a score, but too few repeats in common with the best for a test."""
-        kept = set(self.comparisons.untested().tolist())
+        """Alternatives with a score, but too few repeats in common with `against` for a test."""
+        return self._named(self.comparisons.untested())
+
+    def _named(self, positions: NDArray[np.int64]) -> list[str]:
+        kept = set(positions.tolist())
         names = self.scores.table.alternatives
         return [names[position] for position in self.scores.order if int(position) in kept]
 
@@ -171,6 +185,7 @@ class Ranking:
             "interval": self.interval,
             "top_k": self.top_k,
             "test": self.comparisons.test,
+            "against": self.against,
         }
 
 
@@ -184,6 +199,7 @@ def rank_alternatives(
     test: str = "bootstrap",
     top_k: int = TOP_K,
     noun: str = "alternative",
+    against: str | None = None,
 ) -> Ranking:
     """Score a table and estimate the uncertainty of the ranking.
 
@@ -197,11 +213,13 @@ def rank_alternatives(
     interval : {"joint", "pairwise"}
         Score interval: joint resampling, or pairwise as in the thesis.
     test : {"bootstrap", "wilcoxon"}
-        Significance test against the best; see `significance.compare_with_best`.
+        Significance test; see `significance.compare_with_one`.
     top_k : int
         Number of first places that ``probability_top`` counts.
     noun : str
         What the alternatives are.
+    against : str, optional
+        The alternative that the others are tested against; the best by default.
 
     Raises
     ------
@@ -212,5 +230,5 @@ def rank_alternatives(
     check_choice("interval", interval, INTERVALS)
     scores = score(table, settings)
     resampled = bootstrap(scores, resamples, seed)
-    comparisons = compare_with_best(scores, resampled, test)
+    comparisons = compare_with_one(scores, resampled, test, against)
     return Ranking(scores, resampled, comparisons, seed, interval, top_k, noun)

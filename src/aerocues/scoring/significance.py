@@ -1,4 +1,4 @@
-"""Tests whether the best alternative is significantly better than the others."""
+"""Tests whether an alternative, the best or a chosen one, differs from the others."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aerocues.arguments import check_choice
+from aerocues.errors import ArgumentError
 from aerocues.scoring.bootstrap import Bootstrap
 from aerocues.scoring.cues import DIGITS, Scores
 from aerocues.scoring.per_repeat import scores_of_units
@@ -21,34 +22,42 @@ FEWEST_UNITS = 5
 
 
 @dataclass(frozen=True)
-class ComparisonsWithBest:
-    """The best alternative against all others.
+class Comparisons:
+    """One alternative against all others.
 
     Attributes
     ----------
-    best : int
-        Index of the best alternative.
+    one : int
+        Its index.
     difference : (alternatives,) float64
-        Score of the best minus the score of each.
+        Its score minus the score of each.
     p_value : (alternatives,) float64
-        Two-sided, corrected for the number of comparisons (Holm); NaN for the best itself, for
-        alternatives without a score, and for those with too few repeats in common with the best.
+        Two-sided, corrected for the number of comparisons (Holm); NaN for itself, for alternatives
+        without a score, and for those with too few repeats in common with it.
     test : str
     """
 
-    best: int
+    one: int
     difference: Array
     p_value: Array
     test: str
 
     def indistinguishable(self, level: float = LEVEL) -> NDArray[np.int64]:
-        """Indices of the alternatives not significantly different from the best, without it."""
+        """Indices of the alternatives not significantly different from it, without it."""
         return np.flatnonzero(self.p_value >= level)
 
+    def surpassed(self, level: float = LEVEL) -> NDArray[np.int64]:
+        """Indices of the alternatives that are significantly worse."""
+        return np.flatnonzero((self.p_value < level) & (self.difference > 0))
+
+    def surpassing(self, level: float = LEVEL) -> NDArray[np.int64]:
+        """Indices of the alternatives that are significantly better; none than the best."""
+        return np.flatnonzero((self.p_value < level) & (self.difference < 0))
+
     def untested(self) -> NDArray[np.int64]:
-        """Indices of the alternatives with a score but too few repeats in common with the best."""
+        """Indices of the alternatives with a score but too few repeats in common with it."""
         missing = np.isnan(self.p_value) & ~np.isnan(self.difference)
-        missing[self.best] = False
+        missing[self.one] = False
         return np.flatnonzero(missing)
 
 
@@ -145,10 +154,10 @@ def holm(p_values: Array) -> Array:
     return corrected
 
 
-def compare_with_best(
-    scores: Scores, resampled: Bootstrap, test: str = "bootstrap"
-) -> ComparisonsWithBest:
-    """Test the best alternative against each other alternative, paired by repeats.
+def compare_with_one(
+    scores: Scores, resampled: Bootstrap, test: str = "bootstrap", against: str | None = None
+) -> Comparisons:
+    """Test one alternative against each other alternative, paired by repeats.
 
     Parameters
     ----------
@@ -157,11 +166,13 @@ def compare_with_best(
         Resamples of these scores.
     test : {"bootstrap", "wilcoxon"}
         Test on the difference of the scores, or on the differences in single units.
+    against : str, optional
+        Name of the alternative; the best by default.
 
     Raises
     ------
-    ScoreError
-        If there is no such test.
+    AerocuesError
+        If there is no such test or alternative, or it has no score.
 
     Notes
     -----
@@ -171,12 +182,15 @@ def compare_with_best(
     follow the differences, so that small p-values are too frequent.
     """
     check_choice("test", test, TESTS)
+    one = scores.best if against is None else _position(scores, against)
     others = np.arange(len(scores.scores))
-    p_values = TESTS[test](scores, resampled, np.full_like(others, scores.best), others)
-    p_values[scores.best] = np.nan
-    return ComparisonsWithBest(
-        best=scores.best,
-        difference=scores.scores[scores.best] - scores.scores,
-        p_value=holm(p_values),
-        test=test,
-    )
+    p_values = TESTS[test](scores, resampled, np.full_like(others, one), others)
+    p_values[one] = np.nan
+    return Comparisons(one, scores.scores[one] - scores.scores, holm(p_values), test)
+
+
+def _position(scores: Scores, name: str) -> int:
+    names = scores.table.alternatives
+    if name not in {names[position] for position in scores.order}:
+        raise ArgumentError(f"`against` must be one of those that have a score, got {name!r}")
+    return list(names).index(name)
