@@ -111,7 +111,9 @@ function drawing({entry, width, colours}, flight, edges, column, height) {
     const hit = makeSvg("line", {...ends, stroke: "transparent", "stroke-width": 12, class: "edge", role: "button", tabindex: 0, "aria-label": told});
     hit.addEventListener("click", open);
     hit.addEventListener("keydown", event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); open(); } });
-    return [makeSvg("line", {...ends, stroke: isWeak(edge) ? WEAK : onCividis((edge.matches ?? 0) / (most || 1)),
+    // A rim, for one end of the colours is as dark as the dark page, the other as light as the light one.
+    const rim = makeSvg("line", {...ends, stroke: colours.ink, "stroke-opacity": 0.4, "stroke-width": 4.5});
+    return [isWeak(edge) ? [] : rim, makeSvg("line", {...ends, stroke: isWeak(edge) ? WEAK : onCividis((edge.matches ?? 0) / (most || 1)),
       "stroke-width": isWeak(edge) ? 3 : 2.5, "stroke-dasharray": edge.failed ? "5 4" : "none"}), hit];
   });
   const tip = (/** @type {number} */ i) => flight.images[i].name;
