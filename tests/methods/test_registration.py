@@ -15,6 +15,7 @@ from aerocues.methods.explanation import explain
 from aerocues.methods.plugins import installed_methods, register, register_class
 from aerocues.methods.registry import opencv_methods
 from aerocues.methods.selection import select
+from aerocues.methods.strongest import limited
 
 CODE = """
 import numpy as np
@@ -64,6 +65,24 @@ class Unsure(None_):
 
 class Numbers(None_):
     takes_descriptors = (1, 2)
+
+
+class Weighty(None_):
+    on_request = "heavy"
+    needs_file = {"path": "weights.bin", "variable": "OWN_WEIGHTS", "remedy": "download it"}
+
+
+class Many(Corners):
+    parameters = {"count": 900, "step": 2}
+    limit = "count"
+
+
+class Limitless(Corners):
+    limit = "count"
+
+
+class Nowhere(None_):
+    needs_file = {"variable": "OWN_WEIGHTS"}
 
 
 class Odd:
@@ -118,6 +137,28 @@ def test_a_matcher_takes_the_descriptors_that_it_was_made_for(module: str) -> No
             select(methods, text)
 
 
+def test_a_method_is_unavailable_as_long_as_its_file_is_missing(
+    module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    register("matcher", "WEIGHTY", f"{module}:Weighty")
+    told = "WEIGHTY is unavailable: weights.bin does not exist; download it"
+    for asked in ("SIFT-SIFT-L2-WEIGHTY", "SIFT-*,+heavy"):
+        with pytest.raises(SelectionError, match=told):
+            select(installed_methods(), asked)
+    (tmp_path / "weights.bin").touch()
+    assert len(select(installed_methods(), "SIFT-SIFT-L2-WEIGHTY")) == 1
+    monkeypatch.setenv("OWN_WEIGHTS", str(tmp_path / "others.bin"))
+    assert "others.bin" in explain("SIFT-SIFT-L2-WEIGHTY", installed_methods())
+
+
+def test_a_detector_that_limits_itself_is_told_how_many_keypoints_are_kept(module: str) -> None:
+    register("detector", "MANY", f"{module}:Many")
+    methods = installed_methods()
+    assert limited(methods, 500).detectors["MANY"].parameters == {"count": 500, "step": 2}
+    assert limited(methods, 1000).detectors["MANY"].parameters["count"] == 900
+
+
 def test_a_class_of_a_module_stands_for_its_name(module: str) -> None:
     register("detector", "CORNERS", importlib.import_module(module).Corners)
     assert installed_methods().detectors["CORNERS"].factory == "own_methods:Corners"
@@ -149,6 +190,8 @@ def test_changed_source_makes_another_method(module: str, tmp_path: Path) -> Non
         ("descriptor", "ODD", "own_methods:Odd", MethodUnavailableError),
         ("matcher", "UNSURE", "own_methods:Unsure", MethodUnavailableError),
         ("matcher", "NUMBERS", "own_methods:Numbers", MethodUnavailableError),
+        ("detector", "LIMITLESS", "own_methods:Limitless", MethodUnavailableError),
+        ("matcher", "NOWHERE", "own_methods:Nowhere", MethodUnavailableError),
     ],
 )
 def test_what_cannot_be_registered_is_refused(

@@ -12,11 +12,14 @@ import cv2
 import numpy as np
 import polars as pl
 import pytest
+from aerocues_learned.weights import VARIABLE
 from numpy.typing import NDArray
 
 import aerocues
+from aerocues.errors import SelectionError
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.selection import select
+from aerocues.methods.strongest import KeypointLimit
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 LIGHTERGLUE = "XFEAT-XFEAT-L2-LIGHTERGLUE"
@@ -69,6 +72,21 @@ def test_torch_is_not_needed() -> None:
     assert importlib.util.find_spec("torch") is None
 
 
+def test_lightglue_without_weights_is_refused_before_anything_is_measured(
+    photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "none.onnx"))
+    with pytest.raises(SelectionError, match=r"none\.onnx does not exist.*make learned-weights"):
+        aerocues.run(photographs, "ALIKED_N16ROT-*-LIGHTGLUE", tmp_path / "results")
+    assert not (tmp_path / "results").exists()
+
+
+def test_networks_describe_no_more_than_the_keypoints_that_are_kept() -> None:
+    kept = KeypointLimit(500).limited(installed_methods())
+    extractors = ("XFEAT", "ALIKED_T16", "ALIKED_N16ROT")
+    assert {kept.detectors[name].parameters["count"] for name in extractors} == {500}
+
+
 def test_the_command_line_knows_them() -> None:
     asked = ["-m", "aerocues", "methods", "why", LIGHTERGLUE, "ALIKED_N16ROT-ALIKED_N16ROT-L2-BF"]
     run = subprocess.run([sys.executable, *asked], capture_output=True, text=True, check=False)
@@ -76,9 +94,11 @@ def test_the_command_line_knows_them() -> None:
     assert run.stdout.count(" runs") == 2
 
 
-def test_combinations_of_the_guide_exist() -> None:
+def test_combinations_of_the_guide_exist(monkeypatch: pytest.MonkeyPatch) -> None:
     page = (REPOSITORY / "docs" / "learned.md").read_text(encoding="utf-8")
     patterns = re.findall(r"--combinations '([^']+)'", page)
     assert patterns
+    # The choice is looked at, not made: a file is enough that is there.
+    monkeypatch.setenv(VARIABLE, __file__)
     for each in patterns:
         assert select(installed_methods(), each)

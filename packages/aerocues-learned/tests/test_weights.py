@@ -39,11 +39,12 @@ def test_missing_weights_are_told_with_what_to_do(
         LightGlue(**LightGlue.parameters)
 
 
-def test_other_weights_are_refused(tmp_path: Path) -> None:
+def test_other_weights_are_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     file = tmp_path / LIGHTGLUE
     file.write_bytes(b"something else")
+    monkeypatch.setenv(VARIABLE, str(file))
     with pytest.raises(MethodUnavailableError, match="another file"):
-        lightglue_weights(str(file))
+        lightglue_weights()
 
 
 def test_a_provider_that_is_not_there_is_told() -> None:

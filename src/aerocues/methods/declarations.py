@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint
+from pathlib import Path
 from typing import Any, get_args
 
 from aerocues.methods.descriptors import DescriptorType
@@ -36,6 +38,11 @@ class Declaration:
         Whether it expects images that are not turned against each other.
     on_request : str
         The set of methods in which it is offered; empty: it always takes part.
+    limit : str
+        The parameter by which a detector or extractor chooses the best so many keypoints; empty:
+        there is none.
+    needs_file : mapping of str to str
+        A file without which it cannot run: see `why_no_file`; empty: it needs none.
     problem : str or None
         Why it cannot be used; the rest is then empty.
     """
@@ -48,7 +55,29 @@ class Declaration:
     takes_descriptors: tuple[str, ...] = ()
     upright: bool = False
     on_request: str = ""
+    limit: str = ""
+    needs_file: Mapping[str, str] = field(default_factory=dict)
     problem: str | None = None
+
+    def why_not(self) -> str | None:
+        """Why it cannot be used now, or None if it can."""
+        return self.problem or why_no_file(self.needs_file)
+
+
+def why_no_file(needed: Mapping[str, str]) -> str | None:
+    """Why a file that a method needs is not there, or None if it is.
+
+    Parameters
+    ----------
+    needed : mapping of str to str
+        ``path``, where the file is; ``variable``, the environment variable that names another
+        place; and ``remedy``, how to get it. Empty: none is needed.
+    """
+    if not needed:
+        return None
+    named = os.environ.get(needed.get("variable", ""))
+    path = Path(named or needed["path"]).expanduser()
+    return None if path.is_file() else f"{path} does not exist; {needed['remedy']}"
 
 
 class _UnfitError(Exception):
@@ -72,6 +101,8 @@ def read_declaration(entry: EntryPoint, group: str) -> Declaration:
             _takes_descriptors(factory) if group == "matchers" else (),
             _upright(factory),
             _on_request(factory),
+            _limit(factory) if group in ("detectors", "extractors") else "",
+            _needs_file(factory),
         )
     except (_UnfitError, ImportError) as error:
         problem = str(error) or type(error).__name__
@@ -144,3 +175,19 @@ def _on_request(factory: Any) -> str:
     if not isinstance(declared, str) or not re.fullmatch(r"\w*", declared):
         raise _UnfitError(f"its 'on_request' must be a name such as 'learned', not {declared!r}")
     return declared.lower()
+
+
+def _limit(factory: Any) -> str:
+    declared = getattr(factory, "limit", "")
+    if declared and not isinstance(_parameters(factory).get(declared), int):
+        raise _UnfitError(
+            f"its 'limit' must name one of its 'parameters', a whole number, not {declared!r}"
+        )
+    return str(declared)
+
+
+def _needs_file(factory: Any) -> dict[str, str]:
+    declared = dict(_mapping(factory, "needs_file", "'path', 'variable' and 'remedy' to texts"))
+    if declared and not {"path", "remedy"} <= declared.keys() <= {"path", "remedy", "variable"}:
+        raise _UnfitError("its 'needs_file' must have a 'path', a 'remedy' and maybe a 'variable'")
+    return {name: str(value) for name, value in declared.items()}

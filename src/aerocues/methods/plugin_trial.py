@@ -25,7 +25,7 @@ SECONDS = 30.0
 """That an import may take; packages of neural networks take up to 10."""
 LAST_WORDS = 120
 PRINTS = "it prints to standard output when it is imported ({words}), which programs read"
-FORM = 2
+FORM = 3
 """Number of the form of a remembered declaration."""
 
 

@@ -186,10 +186,11 @@ def _detector(plug_in: _PlugIn, declared: Declaration) -> DetectorRow:
         plug_in.entry.value,
         declared.parameters,
         declared.reference,
+        limit=declared.limit or None,
         on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
-        unavailable=declared.problem,
+        unavailable=declared.why_not(),
     )
 
 
@@ -204,7 +205,7 @@ def _descriptor(plug_in: _PlugIn, declared: Declaration) -> DescriptorRow:
         on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
-        unavailable=declared.problem,
+        unavailable=declared.why_not(),
     )
 
 
@@ -224,7 +225,7 @@ def _matcher(plug_in: _PlugIn, declared: Declaration) -> MatcherRow:
         on_request=declared.on_request,
         upright=declared.upright,
         origin=plug_in.origin,
-        unavailable=declared.problem,
+        unavailable=declared.why_not(),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from typing import Any
 
 from aerocues.errors import SelectionError
 from aerocues.methods.combination import Combination
@@ -166,6 +167,16 @@ def _on_request(pattern: str, requested: Sequence[Combination], methods: Methods
     return f"{pattern!r} matches only methods on request, such as {requested[0]}; {remedy}"
 
 
+def _require_sets(sets: Iterable[str], can_run: Iterable[Combination], methods: Methods) -> None:
+    """Check that something of each set that is asked for can be used here."""
+    usable = {row.on_request for each in can_run for row in methods.rows(each)}
+    for name in sorted(set(sets) - usable):
+        rows: list[Any] = [*methods.detectors.values(), *methods.matchers.values()]
+        lacking = next(row for row in rows if row.on_request == name)
+        told = f"{lacking.name} is unavailable: {lacking.unavailable}"
+        raise SelectionError(f"nothing of {WITH}{name} can be used here: {told}")
+
+
 def _by_component(
     candidates: list[Combination], component: str, names: Sequence[str]
 ) -> list[Combination]:
@@ -218,6 +229,7 @@ def select(
     usual = [each for each in can_run if everything or why_meaningless(each, methods) is None]
     kept_detectors, kept_descriptors = split_names(detectors), split_names(descriptors)
     asked = Asked.of(patterns, methods, (*kept_detectors, *kept_descriptors))
+    _require_sets(asked.sets, can_run, methods)
     chosen: set[Combination] = set()
     for pattern in asked.includes:
         pool = usual if WILDCARDS & set(pattern) else can_run

@@ -39,6 +39,8 @@ class LearnedExtractor:
 
     dtype = "float32"
     on_request = "learned"
+    # What aerocues keeps of an image at most, the network need not describe more.
+    limit = "count"
     # None of them estimates the orientation of a keypoint.
     upright = True
     parameters: ClassVar[dict[str, Any]]

@@ -10,7 +10,7 @@ import numpy as np
 from aerocues import Features, Matches
 from aerocues_learned.images import Float32Array
 from aerocues_learned.sessions import CPU, Network
-from aerocues_learned.weights import FOLDER, lightglue_weights
+from aerocues_learned.weights import FOLDER, NEEDED, lightglue_weights
 
 
 class LightGlueMatcher:
@@ -87,7 +87,8 @@ class LightGlue(LightGlueMatcher):
     takes_descriptors = ("ALIKED_N16ROT",)
     # A set of its own: whoever asks for all learned methods may not have its weights.
     on_request = "lightglue"
-    parameters: ClassVar[dict[str, Any]] = {"threshold": 0.1, "provider": CPU, "weights": ""}
+    parameters: ClassVar[dict[str, Any]] = {"threshold": 0.1, "provider": CPU}
+    needs_file = NEEDED
 
-    def __init__(self, threshold: float, provider: str, weights: str) -> None:
-        super().__init__(lightglue_weights(weights), threshold, provider)
+    def __init__(self, threshold: float, provider: str) -> None:
+        super().__init__(lightglue_weights(), threshold, provider)

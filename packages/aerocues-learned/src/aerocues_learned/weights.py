@@ -8,12 +8,23 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from aerocues.errors import MethodUnavailableError
+from aerocues.methods.declarations import why_no_file
 
 FOLDER = Path(__file__).resolve().parent / "weights"
 CHECKSUMS = FOLDER / "SHA256SUMS"
 VARIABLE = "AEROCUES_LIGHTGLUE_WEIGHTS"
 """The environment variable that names the file of LIGHTGLUE's weights."""
 LIGHTGLUE = "lightglue-aliked.onnx"
+NEEDED: Mapping[str, str] = {
+    "path": str(FOLDER / LIGHTGLUE),
+    "variable": VARIABLE,
+    "remedy": (
+        f"its weights (46 MB) are not part of the package: make {LIGHTGLUE} with `make "
+        f"learned-weights` in a checkout of aerocues, and name the file in the environment "
+        f"variable {VARIABLE}"
+    ),
+}
+"""The file of LIGHTGLUE's weights, as aerocues looks for it before anything is measured."""
 
 
 def checksums() -> Mapping[str, str]:
@@ -28,27 +39,17 @@ def sha256(file: Path) -> str:
         return hashlib.file_digest(opened, "sha256").hexdigest()
 
 
-def lightglue_weights(path: str = "") -> Path:
-    """The weights of LIGHTGLUE, which are too large for the package (46 MB).
-
-    Parameters
-    ----------
-    path : str
-        The file; empty: the one that `VARIABLE` names, or the one in the folder of the package.
+def lightglue_weights() -> Path:
+    """The weights of LIGHTGLUE: the file that `VARIABLE` names, or the one in the package.
 
     Raises
     ------
     MethodUnavailableError
         If there is no such file, or it holds something else.
     """
-    named = path or os.environ.get(VARIABLE, "")
-    file = Path(named).expanduser() if named else FOLDER / LIGHTGLUE
-    if not file.is_file():
-        where = f"{file} does not exist" if named else "its weights (46 MB) are not in the package"
-        raise MethodUnavailableError(
-            f"LIGHTGLUE cannot run: {where}; make {LIGHTGLUE} with `make learned-weights` in a "
-            f"checkout of aerocues, and name the file in the environment variable {VARIABLE}"
-        )
+    if missing := why_no_file(NEEDED):
+        raise MethodUnavailableError(f"LIGHTGLUE cannot run: {missing}")
+    file = Path(os.environ.get(VARIABLE) or NEEDED["path"]).expanduser()
     if sha256(file) != checksums()[LIGHTGLUE]:
         raise MethodUnavailableError(
             f"LIGHTGLUE cannot run: {file} is another file than this version of aerocues-learned "
