@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import aerocues
 from aerocues.datasets.dataset import Dataset, Image, Pixels, with_turns
 from aerocues.datasets.decoded import DecodedSource
 from aerocues.datasets.decoding import FileSource
+from aerocues.errors import SelectionError
 from aerocues.methods import plugins
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.combination import Combination
@@ -23,7 +25,7 @@ from aerocues.pipeline.feature_folder import FeatureFolder
 from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import as_seen
 from aerocues.pipeline.protocol import MeasurementProtocol
-from aerocues.pipeline.survey import Survey, SurveyedPair
+from aerocues.pipeline.survey import Survey, SurveyedPair, Surveyor
 from aerocues.pipeline.turning import turned_keypoints, turned_pixels, turned_points, turned_size
 from aerocues.pipeline.upright import turns_to_common_heading
 from tests.evaluation.inline import InlineEngine
@@ -89,6 +91,31 @@ def test_most_images_of_a_group_stay_as_they_are() -> None:
     assert turns_to_common_heading(between)["b"] == turns_to_common_heading(between)["c"]
 
 
+def test_the_yaw_of_metadata_joins_groups_where_it_agrees_with_the_pixels() -> None:
+    # Two strips that pairs join, and two images that none joins.
+    flight = survey("abcdef", (0, 1, 2.0), (1, 2, 178.0), (2, 3, 1.0))
+    yaws = dict(zip("abcdef", (40.0, 38.0, -138.0, -140.0, 41.0, -141.0), strict=True))
+    assert list(turns_to_common_heading(flight, yaws).values()) == [0, 0, 180, 180, 0, 180]
+    assert turns_to_common_heading(flight, {**yaws, "c": 38.0})["f"] == 0
+    # Without a turn that the pixels show, yaws prove nothing: images may have been turned since.
+    apart = survey("abcd", (0, 1, 2.0), (2, 3, 1.0))
+    known = dict(zip("abcd", (40.0, 38.0, -138.0, -140.0), strict=True))
+    assert set(turns_to_common_heading(apart, known).values()) == {0}
+
+
+def test_nothing_is_surveyed_before_arguments_are_checked_or_without_time(
+    as_flown: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Surveyor, "survey", lambda self, progress: pytest.fail("surveyed"))
+    for call in (aerocues.run, aerocues.recommend, aerocues.reconstruct):
+        with pytest.raises(SelectionError):
+            call(as_flown, "SIFT-NOTHING-L2-BF", tmp_path / "none", upright=True)
+    assert not (tmp_path / "none").exists()
+    spent = time.monotonic() - 60
+    with pytest.raises(SelectionError, match="surveying the flight"):
+        aerocues.recommend(as_flown, "SIFT-*,ORB-*", tmp_path, upright=True, budget=60, began=spent)
+
+
 class Noted:
     """A matcher that remembers the sizes and places that it is told."""
 
@@ -123,12 +150,16 @@ def test_upright_methods_match_images_that_are_turned_back(
     assert "1 of 3" in upright.notes[-1]
     right = {}
     options: dict[str, Any] = {"timing": "shared", "preset": "thesis", "engine": InlineEngine()}
-    for name, dataset in (("plain", as_flown), ("upright", upright)):
-        results = aerocues.run(dataset, str(SIFT), tmp_path / name, **options)
+    events: list[aerocues.Event] = []
+    for name in ("plain", "upright"):
+        options |= {"upright": name == "upright", "progress": events.append}
+        results = aerocues.run(as_flown, str(SIFT), tmp_path / name, **options)
         rows = results.table().sort("pair").to_dicts()
         right[name] = [row["inliers"] for row in rows]
         turns = [(row["turned_1"], row["turned_2"]) for row in rows]
         assert turns == ([(None, None)] * 2 if name == "plain" else [(0, 180), (180, 0)])
+    assert {event.message for event in events} & {upright.notes[-1]}
+    assert any(event.stage == "surveying the flight" and event.total for event in events)
     reopened = open_as_measured(as_flown_folder(as_flown), results)
     assert [image.turn for image in reopened.images] == [0, 180, 0]
     assert min(right["upright"]) > 100

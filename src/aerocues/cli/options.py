@@ -204,6 +204,12 @@ FeaturesOption = Annotated[
 RetryFailedOption = Annotated[
     bool, typer.Option("--retry-failed", help="Repeat what failed on this machine.")
 ]
+UprightOption = Annotated[
+    bool,
+    typer.Option(
+        "--upright", help="Turn images to a common heading, by quarters, before finding features."
+    ),
+]
 SeedOption = Annotated[
     int,
     typer.Option(min=0, max=2**31 - 1, metavar="N", help="Seed of all random choices."),

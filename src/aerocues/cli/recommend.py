@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.limit_options import (
     LicenceOption,
     Limits,
@@ -33,6 +32,7 @@ from aerocues.cli.options import (
     SeedOption,
     SubsetOption,
     TopOption,
+    UprightOption,
     WithOption,
     WorkersOption,
     given_options,
@@ -173,7 +173,6 @@ def recommend(
             every=every,
         )
         folder = output or Path(f"{images.name}-race")
-        images = turned(images, seed, folder, asked=upright)
         tell_images(images)
         with display_and_page(folder, live=live) as (_, progress):
             found = aerocues.recommend(
@@ -188,6 +187,7 @@ def recommend(
                 max_keypoints=max_keypoints,
                 preset=preset,
                 device=device,
+                upright=upright,
                 seed=seed,
                 workers=workers,
                 began=began,

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.next_commands import AsMeasured
 from aerocues.cli.options import (
     EQUALIZE,
@@ -29,6 +28,7 @@ from aerocues.cli.options import (
     SeedOption,
     SequencesOption,
     SubsetOption,
+    UprightOption,
     WorkersOption,
 )
 from aerocues.cli.serving import LiveOption
@@ -163,7 +163,6 @@ def reconstruct(
             band=band,
             every=every,
         )
-        scene = turned(scene, seed, None, asked=upright)
         tell_images(scene)
         with display_and_page(results or output, live=live) as (_, progress):
             models = aerocues.reconstruct(
@@ -184,6 +183,7 @@ def reconstruct(
                 baseline=baseline,
                 colours=colours,
                 undistort=undistort,
+                upright=upright,
                 seed=seed,
                 features=features,
                 workers=workers,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.options import (
     BandOption,
     CombinationsOption,
@@ -33,6 +32,7 @@ from aerocues.cli.options import (
     SequencesOption,
     SubsetOption,
     TopOption,
+    UprightOption,
     WithOption,
     WorkersOption,
     with_sets,
@@ -163,7 +163,6 @@ def run(
             band=band,
             every=every,
         )
-        images = turned(images, seed, None if dry_run else output, asked=upright)
         tell_images(images)
         arguments: dict[str, Any] = {
             "dataset": images,
@@ -178,6 +177,7 @@ def run(
             "seed": seed,
             "timing": timing.value,
             "timing_pairs": timing_pairs,
+            "upright": upright,
             "retry_failed": retry_failed,
         }
         if dry_run:

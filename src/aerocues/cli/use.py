@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aerocues.cli.heading import UprightOption, turned
 from aerocues.cli.options import (
     EQUALIZE,
     METHOD_PRESET,
@@ -20,12 +19,11 @@ from aerocues.cli.options import (
     PluginOption,
     RefineKeypointsOption,
     SubsetOption,
+    UprightOption,
 )
 from aerocues.defaults import STAGE_TIMEOUT
-from aerocues.errors import ArgumentError
 
 if TYPE_CHECKING:
-    from aerocues.datasets.dataset import Dataset
     from aerocues.exports.use import Used
 
 NAME_PARTS = 4
@@ -114,26 +112,12 @@ def use(
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.live import display
-    from aerocues.modelling.reconstruct import open_as_measured
 
     if results is not None and dataset is None and combination and not _is_name(combination):
         combination, dataset = None, combination
     with interruptible(), display() as tally:
-        images: str | Dataset | None = dataset
-        if upright and dataset is None:
-            raise ArgumentError("there are no images to turn; give them, or leave --upright out")
-        if upright and dataset is not None:
-            scene = open_as_measured(
-                dataset,
-                None if results is None else aerocues.Results(results),
-                pairs=pairs,
-                max_width=max_width,
-                equalize=equalize,
-                subset=subset,
-            )
-            images = turned(scene, seed or 0, None, asked=True)
         used = aerocues.use(
-            images,
+            dataset,
             combination,
             output,
             target=target.value,
@@ -145,6 +129,7 @@ def use(
             seed=seed,
             pairs=pairs,
             subset=subset,
+            upright=upright,
             refine_keypoints=refine_keypoints,
             features_width=features_width,
             features=features,

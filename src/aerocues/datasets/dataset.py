@@ -118,7 +118,8 @@ class Image:
 
     ``name`` is unique in its dataset (a path relative to it, with ``/``). ``turn`` is by how many
     degrees counterclockwise, 0, 90, 180 or 270, it is turned while features are found in it; None
-    where nobody asked for that. Positions are those of the image as it is.
+    where nobody asked for that. Positions are those of the image as it is. ``yaw`` is where its top
+    points, degrees clockwise from north, by its metadata.
     """
 
     name: str
@@ -126,6 +127,7 @@ class Image:
     gps: GpsPosition | None = None
     truth: TrueView | None = None
     turn: int | None = None
+    yaw: float | None = None
 
     def read(self) -> Pixels:
         return self.source.read()

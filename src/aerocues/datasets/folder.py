@@ -66,7 +66,8 @@ def file_images(
     files = {named[source.path]: source.path for source in sources}
     metadata = {name: read_metadata(path) for name, path in files.items()}
     images = [
-        Image(name, source, metadata[name].gps) for name, source in zip(files, sources, strict=True)
+        Image(name, source, metadata[name].gps, yaw=metadata[name].yaw)
+        for name, source in zip(files, sources, strict=True)
     ]
     return images, oddities(files, metadata)
 

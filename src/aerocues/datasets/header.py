@@ -38,7 +38,7 @@ _SIGNATURES = (
     ("PPM", (b"P1", b"P2", b"P3", b"P4", b"P5", b"P6")),
 )
 _GRAY_MODES = frozenset({"1", "L", "LA", "La", "F"})
-_ORIENTATION = 274
+_ORIENTATION, _XMP = 274, 700
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,8 @@ class Header:
         Type of the stored values, such as ``uint8``, ``uint16`` or ``float32``.
     pages : tuple of Page
         Of a TIFF file: those of full size.
+    xmp : bytes or str or None
+        The XMP packet, if there is one.
     """
 
     format: str
@@ -68,6 +70,7 @@ class Header:
     orientation: int = 1
     sample_type: str = "uint8"
     pages: tuple[Page, ...] = ()
+    xmp: bytes | str | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -174,6 +177,7 @@ class _Opened:
     size: tuple[int, int]
     exif: Any
     pages: tuple[Page, ...] = ()
+    xmp: Any = None
 
 
 def _parse(stream: IO[bytes]) -> Header:
@@ -187,7 +191,11 @@ def _header(opened: _Opened, stream: IO[bytes]) -> Header:
     sample_type = (
         opened.pages[0].sample_type if opened.pages else _sample_type(stream, opened.format)
     )
-    return Header(opened.format, opened.mode, *opened.size, orientation, sample_type, opened.pages)
+    xmp = opened.xmp or opened.exif.get(_XMP)
+    return Header(
+        *(opened.format, opened.mode, *opened.size, orientation, sample_type, opened.pages),
+        xmp=xmp if isinstance(xmp, bytes | str) else None,
+    )
 
 
 def _open(stream: IO[bytes]) -> _Opened:
@@ -205,7 +213,7 @@ def _open(stream: IO[bytes]) -> _Opened:
         image = _opened_by_pillow(name, stream)
         mode, size = image.mode, image.size
     # Not image.getexif(): for PNG it decodes all pixels to find EXIF behind them.
-    return _Opened(name, mode, size, Image.Image.getexif(image))
+    return _Opened(name, mode, size, Image.Image.getexif(image), xmp=image.info.get("xmp"))
 
 
 def _read_heic(stream: IO[bytes]) -> tuple[str, tuple[int, int], dict[str, Any]]:

@@ -10,6 +10,7 @@ from typing import Any
 from aerocues.datasets.dataset import GpsPosition
 from aerocues.datasets.gps import GPS_DIRECTORY, position_from_tags
 from aerocues.datasets.header import read_tags
+from aerocues.datasets.yaw import yaw_of
 from aerocues.errors import ImageError
 from aerocues.phrases import printable
 
@@ -29,12 +30,15 @@ class Metadata:
     camera : str
         Make and model.
     taken : datetime or None
+    yaw : float or None
+        See `yaw_of`.
     """
 
     size: tuple[int, int] | None = None
     gps: GpsPosition | None = None
     camera: str = ""
     taken: datetime | None = None
+    yaw: float | None = None
 
 
 def read_metadata(path: Path) -> Metadata:
@@ -46,7 +50,7 @@ def read_metadata(path: Path) -> Metadata:
     main, gps, exif = tags[0], tags[GPS_DIRECTORY], tags[_EXIF_DIRECTORY]
     camera = " ".join(filter(None, (_text(main.get(tag)) for tag in (MAKE, MODEL))))
     taken = _time(exif.get(_ORIGINAL_TIME)) or _time(main.get(TIME))
-    return Metadata(header.size, position_from_tags(gps), camera, taken)
+    return Metadata(header.size, position_from_tags(gps), camera, taken, yaw_of(header.xmp))
 
 
 def _text(value: Any) -> str:

@@ -4,34 +4,33 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aerocues.arguments import check_choice, check_whole, seconds_of
+from aerocues.arguments import seconds_of
 from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset
-from aerocues.defaults import CALL_TIMEOUT, RACE_PAIRS, TIMED_PAIRS
+from aerocues.defaults import CALL_TIMEOUT
 from aerocues.errors import ArgumentError
-from aerocues.evaluation.context import make_context, run_facts
+from aerocues.evaluation.context import run_facts
 from aerocues.evaluation.engine import Engine, Finished
-from aerocues.evaluation.passes import Pass, passes, timed_alone
+from aerocues.evaluation.passes import Pass, timed_alone
 from aerocues.evaluation.plan import Plan, make_plan
 from aerocues.evaluation.planned_rows import planned_table
 from aerocues.evaluation.run_progress import RunProgress
+from aerocues.evaluation.run_settings import RunSettings
 from aerocues.evaluation.unit import Context
 from aerocues.methods.combination import Combination
-from aerocues.methods.presets import Preset, as_preset
+from aerocues.methods.presets import Preset
 from aerocues.methods.selection import Patterns, select
-from aerocues.methods.strongest import KeypointLimit, keypoint_limit
-from aerocues.pipeline.flight_pairs import survey_flight
+from aerocues.methods.strongest import keypoint_limit
 from aerocues.processes.limits import memory_mb, share_of_memory, worker_count
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.measured_results import Results
 from aerocues.results.store import RUN, Store
-from aerocues.results.timing import TIMINGS, Timing
+from aerocues.results.timing import Timing
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -39,10 +38,6 @@ if TYPE_CHECKING:
     import polars as pl
 
     from aerocues.evaluation.local_engine import LocalEngine
-
-
-FEWEST_SURVEYED = 5
-"""Fewer images are too short a flight to turn round; consecutive pairs show all there is."""
 
 
 def local_engine(
@@ -80,6 +75,7 @@ def run(
     seed: int = 0,
     timing: Timing = "exclusive",
     timing_pairs: int | None = None,
+    upright: bool = False,
     workers: int | None = None,
     timeout: float | str = CALL_TIMEOUT,
     memory_limit: float | None = None,
@@ -123,6 +119,8 @@ def run(
     timing_pairs : int, optional
         How many pairs exclusive timing takes, a seeded sample; 5 by default, 0 for all. The times
         of the other pairs are scaled by what they show.
+    upright : bool
+        Turn images to a common heading while features are found in them; see `aerocues.upright`.
     workers : int, optional
         Processes at a time; as many as there are cores by default. Exclusive timing takes one.
     timeout : float or str
@@ -150,7 +148,8 @@ def run(
         If an argument, the selection, the images or the results folder do not allow a run. A
         method that fails does not raise: its rows have a status and a message.
     """
-    asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
+    limit = keypoint_limit(max_keypoints, spread=spread)
+    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright)
     engines = _engines(asked, engine, workers, timeout, memory_limit)
     opened = as_dataset(dataset)
     context = asked.context(opened)
@@ -178,62 +177,8 @@ def run(
     return Results(store.folder)
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """What decides the rows of a run and their times besides images and combinations."""
-
-    preset: str | Preset
-    seed: int
-    timing: Timing
-    timing_pairs: int | None
-    limit: KeypointLimit
-
-    def __post_init__(self) -> None:
-        check_choice("timing", self.timing, TIMINGS)
-        check_whole("seed", self.seed, 0)
-        if self.timing_pairs is None:
-            return
-        check_whole("timing_pairs", self.timing_pairs, 0)
-        if self.timing != "exclusive":
-            raise ArgumentError(
-                "`timing_pairs` is for pairs that are timed alone, and "
-                f'`timing="{self.timing}"` times none so; leave one of the two out'
-            )
-
-    @cached_property
-    def parts(self) -> Preset:
-        """The preset."""
-        return as_preset(self.preset)
-
-    def context(self, dataset: Dataset) -> Context:
-        """What all units share."""
-        return make_context(
-            dataset, self.parts, seed=self.seed, timing=self.timing, limit=self.limit
-        )
-
-    def measured(
-        self, dataset: Dataset, told: RunProgress, store: Store | None, *, keep: bool = True
-    ) -> Dataset:
-        """A flight whose pairs nobody chose, with pairs that stand for it; others as they are.
-
-        The preset of the thesis keeps the consecutive pairs.
-        """
-        if not self.parts.chance_test or len(dataset.images) < FEWEST_SURVEYED:
-            return dataset
-        folder = store.surveys if store else None
-        flight = survey_flight(dataset, RACE_PAIRS, self.seed, told.surveyed, folder, keep=keep)
-        for note in flight.notes() if flight else ():
-            told.note(note)
-        return flight.dataset if flight else dataset
-
-    def passes(self, dataset: Dataset) -> tuple[Pass, ...]:
-        """The passes over the pairs."""
-        timed = TIMED_PAIRS if self.timing_pairs is None else self.timing_pairs
-        return passes(dataset.pairs, self.timing, timed, self.seed)
-
-
 def _engines(
-    asked: _Asked,
+    asked: RunSettings,
     engine: Engine | None,
     workers: int | None,
     timeout: float | str,
@@ -292,6 +237,7 @@ def plan_run(
     seed: int = 0,
     timing: Timing = "exclusive",
     timing_pairs: int | None = None,
+    upright: bool = False,
     retry_failed: bool = False,
     progress: Progress | None = None,
 ) -> list[tuple[Timing, Plan]]:
@@ -299,7 +245,8 @@ def plan_run(
 
     A flight whose pairs nobody chose is surveyed for it, about a second an image.
     """
-    asked = _Asked(preset, seed, timing, timing_pairs, keypoint_limit(max_keypoints, spread=spread))
+    limit = keypoint_limit(max_keypoints, spread=spread)
+    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright)
     context, told = asked.context(dataset), RunProgress(progress)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(context.methods, combinations, **kept, everything=everything)

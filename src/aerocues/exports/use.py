@@ -24,6 +24,7 @@ from aerocues.modelling.reconstruct import (
     features_of_results,
     open_as_measured,
     preset_of_results,
+    turned_scene,
 )
 from aerocues.progress import Progress
 from aerocues.reconstruction.options import ReconstructionOptions
@@ -76,6 +77,7 @@ def use(
     seed: int | None = None,
     pairs: str | None = None,
     subset: str | None = None,
+    upright: bool = False,
     refine_keypoints: bool | None = None,
     features_width: int | None = None,
     features: str | Path | None = None,
@@ -116,6 +118,8 @@ def use(
     pairs, subset : str, optional
         Which pairs and images of `dataset`; see `open_dataset`. Neighbours by GPS by default, or
         all pairs where positions are not known.
+    upright : bool
+        Turn images to a common heading while features are found in them; see `aerocues.upright`.
     refine_keypoints : bool, optional
         Whether keypoints of tracks are refined, as in `reconstruct`.
     features_width : int, optional
@@ -153,6 +157,8 @@ def use(
     settings = _settings(measured, preset, given)
     place = None if output is None else Path(output)
     if row.kind != "files":
+        if upright:
+            raise ArgumentError(f"no images are turned for {row.title}; leave `upright` out")
         if dataset is not None:
             raise ArgumentError(f"images are not needed for {row.title}; leave `dataset` out")
         return _text(row, name, settings, place, measured)
@@ -182,6 +188,8 @@ def use(
         timeout=timeout,
         memory_limit=memory_limit,
     )
+    if upright:
+        scene = turned_scene(scene, name, settings.seed, progress)
     written, figures, commands = write_files(row, scene, name, place, options, progress)
     return Used(row.name, written, place, figures=figures, next=commands)
 

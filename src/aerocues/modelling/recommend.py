@@ -15,7 +15,9 @@ from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_W
 from aerocues.methods.presets import Preset
 from aerocues.methods.selection import Patterns
 from aerocues.modelling.final import LEAST_SECONDS, SHARE, build_final, has_final
+from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress
+from aerocues.results.store import Store
 from aerocues.tuning.device import Device, as_device
 from aerocues.tuning.journal import record_answer
 from aerocues.tuning.recommend import RaceOptions, recommend_by_race
@@ -36,6 +38,7 @@ def recommend(
     max_keypoints: int = FLIGHT_KEYPOINTS,
     preset: str | Preset = "default",
     device: Device | Mapping[str, Any] | str | Path | None = None,
+    upright: bool = False,
     seed: int = 0,
     workers: int | None = None,
     began: float | None = None,
@@ -79,6 +82,8 @@ def recommend(
     device : Device, mapping or path, optional
         Machine whose times count: ``compare([here, there]).factors()``, or a file of them; this one
         by default.
+    upright : bool
+        Turn images to a common heading while features are found in them; see `aerocues.upright`.
     seed : int
         Of all that is random.
     workers : int, optional
@@ -113,11 +118,14 @@ def recommend(
         options,
         max_keypoints=max_keypoints,
         preset=preset,
+        upright=upright,
         workers=workers,
         began=began,
         progress=progress,
     )
     if final:
+        if upright:  # by the survey of the race
+            dataset = turned_upright(dataset, seed, folder=Store.open(found.folder).surveys)
         built = build_final(
             found,
             dataset,

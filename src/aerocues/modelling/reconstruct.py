@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from aerocues.arguments import check_whole
@@ -17,6 +18,7 @@ from aerocues.methods.presets import Preset, as_preset, preset_named, preset_nam
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.equal_footing import at_equal_footing
+from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress, StageProgress
 from aerocues.reconstruction.models import Models
 from aerocues.reconstruction.opening import open_scene
@@ -24,7 +26,7 @@ from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.protocol import Intrinsics, Mapper, ReconstructionProtocol
 from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
 from aerocues.reconstruction.scene import Wanted
-from aerocues.reconstruction.scene_making import baseline_alone, beside_baseline
+from aerocues.reconstruction.scene_making import baseline_alone, beside_baseline, check_scene
 from aerocues.results.measured_results import Results, as_results
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
@@ -49,6 +51,7 @@ def reconstruct(
     baseline: bool = True,
     colours: bool = True,
     undistort: bool = False,
+    upright: bool = False,
     seed: int = 0,
     features: str | Path | None = None,
     workers: int | None = None,
@@ -107,6 +110,8 @@ def reconstruct(
         that it refines, and the same number of features.
     colours, undistort : bool
         Whether points are coloured; whether undistorted images are written for a dense step.
+    upright : bool
+        Turn images to a common heading while features are found in them; see `aerocues.upright`.
     seed : int
         Of every stage.
     features : path, optional
@@ -154,10 +159,6 @@ def reconstruct(
         )
     assert combinations is not None
     parts = as_preset(preset or preset_of_results(measured))
-    if measured is None if equal_footing is None else equal_footing:
-        parts = preset_at_equal_footing(
-            scene, combinations, parts, max_keypoints, seed=seed, progress=progress
-        )
     options = ReconstructionOptions(
         preset=parts,
         protocol=ReconstructionProtocol(
@@ -173,7 +174,30 @@ def reconstruct(
         baseline=baseline,
         retry_failed=retry_failed,
     )
+    if upright:
+        scene = turned_scene(scene, combinations, seed, progress)
+    if measured is None if equal_footing is None else equal_footing:
+        parts = preset_at_equal_footing(
+            scene, combinations, parts, max_keypoints, seed=seed, progress=progress
+        )
+        options = replace(options, preset=parts)
     return reconstruct_scene(scene, combinations, Path(output), options, progress, store)
+
+
+def turned_scene(
+    scene: Dataset, combinations: Patterns, seed: int, progress: Progress | None
+) -> Dataset:
+    """The scene with images that are turned to a common heading; see `aerocues.upright`.
+
+    That takes time, so that it is looked first whether scene and combinations will do.
+    """
+    check_scene(scene)
+    if not baseline_alone(combinations):
+        select(installed_methods(), beside_baseline(combinations))
+    told = StageProgress(progress, "surveying the flight", "images and pairs")
+    turned = turned_upright(scene, seed, told.count)
+    told.say(turned.notes[-1])
+    return turned
 
 
 def preset_at_equal_footing(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,12 @@ from aerocues.datasets.catalog import DatasetLike, as_dataset
 from aerocues.datasets.dataset import Dataset, with_turns
 from aerocues.pipeline.flight_pairs import surveyed
 from aerocues.pipeline.survey import Survey
+
+AGREE = 20.0
+"""Degrees by which the yaw of metadata may differ from the rotation of the pixels."""
+TURNED = 0.5
+"""Cosine of the rotation from which on an image is turned: 60 degrees."""
+NO_YAWS: Mapping[str, float] = MappingProxyType({})
 
 
 def upright(
@@ -28,7 +35,8 @@ def upright(
     Many learned methods, and some classic ones, match nothing in images that are turned against
     each other, as those of neighbouring strips of a flight are. A quick match finds how images are
     turned; each is then turned by a multiple of 90 degrees, which is exact, and positions are
-    turned back. Up to 45 degrees remain. Images that no pair joins keep their heading.
+    turned back. Up to 45 degrees remain. Images that no pair joins keep their heading, unless the
+    yaw in their metadata tells it and agrees with the pixels of the others.
 
     Parameters
     ----------
@@ -53,20 +61,35 @@ def upright(
         If the images cannot be opened.
     """
     check_whole("seed", seed, 0)
-    opened = as_dataset(dataset)
+    return turned_upright(as_dataset(dataset), seed, progress, folder)
+
+
+def turned_upright(
+    dataset: Dataset,
+    seed: int,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+    folder: str | Path | None = None,
+    *,
+    keep: bool = True,
+) -> Dataset:
+    """As `upright`, of what is opened; `keep`: whether a new survey is written to the folder."""
     place = None if folder is None else Path(folder)
-    turns = turns_to_common_heading(surveyed(opened, seed, progress, place, keep=True))
+    yaws = {image.name: image.yaw for image in dataset.images if image.yaw is not None}
+    turns = turns_to_common_heading(surveyed(dataset, seed, progress, place, keep=keep), yaws)
     count = sum(turn != 0 for turn in turns.values())
     told = f"{count} of {len(turns)} images are turned to a common heading"
-    return replace(with_turns(opened, turns), notes=(*opened.notes, told))
+    return replace(with_turns(dataset, turns), notes=(*dataset.notes, told))
 
 
-def turns_to_common_heading(survey: Survey) -> dict[str, int]:
+def turns_to_common_heading(survey: Survey, yaws: Mapping[str, float] = NO_YAWS) -> dict[str, int]:
     """By how many degrees counterclockwise each image is turned: 0, 90, 180 or 270, by name.
 
-    Most images of each group that pairs join stay as they are.
+    Most images of each group that pairs join stay as they are. Yaws of metadata (degrees, by name)
+    join groups where they agree with the pixels.
     """
     headings, groups = _headings(survey)
+    yaw = np.array([yaws.get(name, np.nan) for name in survey.images])
+    headings, groups = _joined(headings, groups, yaw)
     turns = np.zeros(len(survey.images), np.int64)
     for group in np.unique(groups):
         own = groups == group
@@ -89,6 +112,30 @@ def _headings(survey: Survey) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         headings[moved] += headings[pair.image_1] + pair.rotation - headings[pair.image_2]
         groups[moved] = first
     return headings, groups
+
+
+def _joined(
+    headings: NDArray[np.float64], groups: NDArray[np.int64], yaw: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Headings and groups as the yaws of metadata join them; as they are where these disagree.
+
+    Somebody may have turned images after the flight, and gimbals that look straight down may tell
+    anything: each group must agree, and one must show that its yaws follow a turn of the pixels.
+    """
+    joined, merged = headings.copy(), groups.copy()
+    turned = False
+    for group in np.unique(groups[np.isfinite(yaw)]):
+        own = (groups == group) & np.isfinite(yaw)
+        # A camera that turns clockwise turns the picture counterclockwise.
+        apart = np.exp(1j * np.radians(headings[own] + yaw[own]))
+        common = apart.mean()
+        away = np.abs(np.degrees(np.angle(apart / common)))
+        if not away.max() <= AGREE:
+            return headings, groups
+        turned |= bool(np.cos(np.radians(headings[own] - headings[own][0])).min() < TURNED)
+        joined[groups == group] -= np.degrees(np.angle(common))
+        merged[groups == group] = -1
+    return (joined, merged) if turned else (headings, groups)
 
 
 def _quarters(headings: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -72,6 +72,10 @@ class RaceProgress:
         ends = self._began + self._budget
         return StageProgress(self._progress, stage, unit, total=total, ends=ends)
 
+    def note(self, message: str) -> None:
+        """A line to keep."""
+        self._stage.say(message)
+
     def resumed(self, spent: float) -> None:
         """So many seconds were spent before an interruption."""
         self._began -= spent

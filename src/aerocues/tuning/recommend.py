@@ -19,7 +19,8 @@ from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.equal_footing import at_equal_footing
-from aerocues.pipeline.flight_pairs import survey_flight
+from aerocues.pipeline.flight_pairs import SurveyedFlight, survey_flight
+from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress
 from aerocues.results.hashing import content_hash
 from aerocues.results.store import RACE, Store
@@ -70,6 +71,7 @@ def recommend_by_race(
     *,
     max_keypoints: int = FLIGHT_KEYPOINTS,
     preset: str | Preset = "default",
+    upright: bool = False,
     workers: int | None = None,
     began: float | None = None,
     progress: Progress | None = None,
@@ -83,7 +85,7 @@ def recommend_by_race(
     Parameters
     ----------
     dataset : Dataset
-    combinations, output, max_keypoints, preset, workers, began, progress
+    combinations, output, max_keypoints, preset, upright, workers, began, progress
         As in `aerocues.recommend`.
     options : RaceOptions
 
@@ -102,15 +104,14 @@ def recommend_by_race(
     seconds, machine, seed = options.budget, options.device, options.seed
     limit, parts = keypoint_limit(max_keypoints), as_preset(preset)
     engine_here = local_engine("estimated", workers)
+    context = make_context(dataset, parts, seed=seed, timing="estimated", limit=limit)
+    chosen = _chosen(context, combinations)
     store = Store.create(Path(output or f"{dataset.name}-race"))
     begun_before = (store.folder / RACE).exists()
     tell = RaceProgress(progress, seconds, began, strict=not begun_before)
-    surveyed = tell.preparing("surveying the flight", "images and pairs")
-    flight = survey_flight(dataset, options.max_pairs, seed, surveyed, store.surveys)
+    dataset, flight = _surveyed(dataset, options, tell, store, upright=upright)
     part = flight.dataset if flight else _spread(dataset, options.max_pairs, seed)
     pairs = part.pairs
-    context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
-    chosen = _chosen(context, combinations)
     reached = tell.preparing("setting thresholds", "detectors", alike=False)
     parts, footings = at_equal_footing(
         context.methods, parts, part.images, chosen, limit, seed=seed, progress=reached
@@ -155,6 +156,18 @@ def recommend_by_race(
         tuple(footings),
         flight,
     )
+
+
+def _surveyed(
+    dataset: Dataset, options: RaceOptions, tell: RaceProgress, store: Store, *, upright: bool
+) -> tuple[Dataset, SurveyedFlight | None]:
+    """The images, turned if that is asked for, and their representative pairs."""
+    surveyed = tell.preparing("surveying the flight", "images and pairs")
+    if upright:
+        dataset = turned_upright(dataset, options.seed, surveyed, store.surveys)
+        tell.note(dataset.notes[-1])
+    pairs = survey_flight(dataset, options.max_pairs, options.seed, surveyed, store.surveys)
+    return dataset, pairs
 
 
 def _raceable(seen: Seen, evaluator: PairEvaluator, preset: Preset, *, surveyed: bool) -> Seen:

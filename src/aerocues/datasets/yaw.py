@@ -1,0 +1,25 @@
+"""Which way a camera faced, as drones write it into the XMP of their images."""
+
+from __future__ import annotations
+
+import re
+
+# As attributes or elements, under the prefixes of DJI, Parrot, senseFly, Autel and others.
+_WRITTEN = r"""\b[\w-]+:{name}\s*(?:=\s*["']|>)\s*([+-]?\d{{1,3}}(?:\.\d{{0,9}})?)\s*["'<]"""
+_NAMES = ("GimbalYawDegree", "GimbalYaw", "Yaw", "FlightYawDegree")
+"""The camera's own yaw before that of the drone."""
+
+
+def yaw_of(xmp: bytes | str | None) -> float | None:
+    """Degrees clockwise from north to the top of a nadir image; None where XMP tells nothing.
+
+    Parameters
+    ----------
+    xmp : bytes, str or None
+        The XMP packet of an image file.
+    """
+    text = xmp.decode(errors="replace") if isinstance(xmp, bytes) else xmp or ""
+    for name in _NAMES:
+        if found := re.search(_WRITTEN.format(name=name), text):
+            return float(found[1])
+    return None

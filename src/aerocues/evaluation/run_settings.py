@@ -1,0 +1,83 @@
+"""What decides the rows of a run besides images and combinations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from aerocues.arguments import check_choice, check_whole
+from aerocues.datasets.dataset import Dataset
+from aerocues.defaults import RACE_PAIRS, TIMED_PAIRS
+from aerocues.errors import ArgumentError
+from aerocues.evaluation.context import make_context
+from aerocues.evaluation.passes import Pass, passes
+from aerocues.evaluation.run_progress import RunProgress
+from aerocues.evaluation.unit import Context
+from aerocues.methods.presets import Preset, as_preset
+from aerocues.methods.strongest import KeypointLimit
+from aerocues.pipeline.flight_pairs import survey_flight
+from aerocues.pipeline.upright import turned_upright
+from aerocues.results.store import Store
+from aerocues.results.timing import TIMINGS, Timing
+
+FEWEST_SURVEYED = 5
+"""Fewer images are too short a flight to turn round; consecutive pairs show all there is."""
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What decides the rows of a run and their times besides images and combinations."""
+
+    preset: str | Preset
+    seed: int
+    timing: Timing
+    timing_pairs: int | None
+    limit: KeypointLimit
+    upright: bool = False
+
+    def __post_init__(self) -> None:
+        check_choice("timing", self.timing, TIMINGS)
+        check_whole("seed", self.seed, 0)
+        if self.timing_pairs is None:
+            return
+        check_whole("timing_pairs", self.timing_pairs, 0)
+        if self.timing != "exclusive":
+            raise ArgumentError(
+                "`timing_pairs` is for pairs that are timed alone, and "
+                f'`timing="{self.timing}"` times none so; leave one of the two out'
+            )
+
+    @cached_property
+    def parts(self) -> Preset:
+        """The preset."""
+        return as_preset(self.preset)
+
+    def context(self, dataset: Dataset) -> Context:
+        """What all units share."""
+        return make_context(
+            dataset, self.parts, seed=self.seed, timing=self.timing, limit=self.limit
+        )
+
+    def measured(
+        self, dataset: Dataset, told: RunProgress, store: Store | None, *, keep: bool = True
+    ) -> Dataset:
+        """A flight whose pairs nobody chose, with pairs that stand for it; others as they are.
+
+        The preset of the thesis keeps the consecutive pairs. Images are turned if that is asked
+        for.
+        """
+        folder = store.surveys if store else None
+        if self.upright:
+            dataset = turned_upright(dataset, self.seed, told.surveyed, folder, keep=keep)
+            told.note(dataset.notes[-1])
+        if not self.parts.chance_test or len(dataset.images) < FEWEST_SURVEYED:
+            return dataset
+        flight = survey_flight(dataset, RACE_PAIRS, self.seed, told.surveyed, folder, keep=keep)
+        for note in flight.notes() if flight else ():
+            told.note(note)
+        return flight.dataset if flight else dataset
+
+    def passes(self, dataset: Dataset) -> tuple[Pass, ...]:
+        """The passes over the pairs."""
+        timed = TIMED_PAIRS if self.timing_pairs is None else self.timing_pairs
+        return passes(dataset.pairs, self.timing, timed, self.seed)
