@@ -55,7 +55,7 @@ LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light test-learned learned-weights lint lint-page audit docs bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light test-learned fresh-learned learned-weights lint lint-page audit docs bench tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -117,6 +117,10 @@ $(LEARNED_INSTALLED): $(LEARNED)/requirements.lock $(INSTALLED)
 	@site() { $$1/bin/python -c 'import site; print(site.getsitepackages()[0])'; }; \
 		printf '%s\n' "$$(site $(VENV))" "$(CURDIR)/src" > "$$(site $(LEARNED_VENV))/usual.pth"
 	@touch $@
+
+# Not part of the tests, as it installs everything from the index anew.
+fresh-learned: | $(BIN)/python ## both wheels in an environment of their own: no torch, and then no network
+	$(LEARNED)/fresh_environment.sh $(CURDIR)/$(BIN)/python
 
 # Only who changes the graphs needs it; torch is in no other environment.
 learned-weights: $(TORCH_INSTALLED) ## export the weights of aerocues-learned again, and the arrays of its tests (installs torch)
