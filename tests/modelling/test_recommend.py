@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -70,13 +71,15 @@ def test_a_race_alone_has_no_final(landscape: Dataset, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_images_without_a_focal_length_have_a_final(landscape: Dataset, tmp_path: Path) -> None:
-    """The images are flat: COLMAP's default does not determine it either."""
+    """The images are flat: COLMAP's default does not determine it either. One is upside down."""
     photos = tmp_path / "photos"
     photos.mkdir()
-    for image in landscape.images[:4]:
-        cv2.imwrite(str(photos / image.name), image.read().bgr)
+    for number, image in enumerate(landscape.images[:4]):
+        pixels = image.read().bgr
+        cv2.imwrite(str(photos / image.name), pixels[::-1, ::-1] if number == 1 else pixels)
     found = aerocues.recommend(
-        photos, "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF", tmp_path / "race", **OPTIONS
+        photos, "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF", tmp_path / "race", upright=True, **OPTIONS
     )
     assert found.final is not None
-    assert "ORB" in {row["detector"] for row in found.final.rows}
+    [model] = [row for row in found.final.rows if row["detector"] == "ORB"]
+    assert json.loads(model["parameters"])["turned"] == {landscape.images[1].name: 180}
