@@ -8,7 +8,9 @@ point's name, in upper case, is the method's name; its object is called with the
 
 Any class may state ``upright = True``: it expects images that are not turned against each other;
 and ``on_request``, the name of a set of methods that take part only where they are named, or with
-``+`` and the name of the set among the patterns.
+``+`` and the name of the set among the patterns. A detector or extractor may state ``limit``, the
+name of the parameter by which it chooses its best so many keypoints; any class ``needs_file``, a
+file without which it is unavailable (see `aerocues.methods.declarations.why_no_file`).
 """
 
 from __future__ import annotations
