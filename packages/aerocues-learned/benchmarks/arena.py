@@ -21,6 +21,7 @@ import polars as pl
 import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.pipeline.flight_pairs import survey_flight
+from aerocues.reconstruction.models import SETTINGS
 from aerocues.reconstruction.opening import open_scene
 from aerocues.results.combination_columns import COMBINATION, combination_name
 from aerocues.scoring.measured import MeasuredRows
@@ -39,6 +40,8 @@ CLASSIC = (
     *("AKAZE-SIFT-L2-EXACT", "BRISK-BRISK-HAM-EXACT", "STAR-BRISK-HAM-EXACT"),
 )
 ALL = (*CLASSIC, *EXTRA, *LEARNED, *DENSE)
+TURNED = 60.0
+"""Degrees from which on two images are turned against each other."""
 PRESET, KEYPOINTS, WIDTH = "tuned", 2000, 1000
 SECONDS = ("detect_seconds_1", "detect_seconds_2", "describe_seconds_1", "describe_seconds_2")
 
@@ -103,13 +106,14 @@ def pair_figures(folder: Path) -> dict[str, dict[str, float]]:
     known = "gt" if rows["gt_precision@3"].is_not_null().any() else "ref"
     share = pl.col(f"{known}_precision@3").fill_null(0.0)
     image = pl.sum_horizontal(f"{name}_cpu" for name in SECONDS) / 2
+    right, turned = pl.col("right"), pl.col("reference_turn").fill_null(0.0) > TURNED
     figures = (
         rows.with_columns(right=share * pl.col("matches").fill_null(0), image=image)
         .group_by(COMBINATION)
         .agg(
             pl.len().alias("pairs"),
-            pl.col("right").median().round(),
-            fewest=pl.col("right").min().round(),
+            right=right.filter(~turned).median().round(),
+            turned=right.filter(turned).median().round(),
             share=share.median(),
             image=pl.col("image").median(),
             match=pl.col("match_seconds_cpu").median(),
@@ -130,7 +134,7 @@ def pair_figures(folder: Path) -> dict[str, dict[str, float]]:
 
 
 def pair_lines(root: Path, names: Sequence[str]) -> Iterator[str]:
-    """A column for each data set: right matches (fewest of a pair; share), rank (classic ones)."""
+    """A column for each data set: right matches / of turned pairs (share), rank (of classic)."""
     found = {name: pair_figures(root / name / "results") for name in names}
     yield f"| combination | {' | '.join(names)} | s image | s pair |"
     yield f"|---|{'---|' * len(names)}---|---|"
@@ -141,8 +145,12 @@ def pair_lines(root: Path, names: Sequence[str]) -> Iterator[str]:
             if row := found[name].get(own):
                 times = times or row
                 classic = f" ({row['classic']:.0f})" if row["classic"] else ""
-                told = f"{row['right']:,.0f} ({row['fewest']:,.0f}; {row['share']:.2f})"
-                cells.append(f"{told}, {row['rank']:.0f}{classic}")
+                right = [
+                    f"{each:,.0f}" for each in (row["right"], row["turned"]) if each is not None
+                ]
+                cells.append(
+                    f"{' / '.join(right)} ({row['share']:.2f}), {row['rank']:.0f}{classic}"
+                )
             else:
                 cells.append("")
         if times:
@@ -175,7 +183,7 @@ def tables(root: Path) -> None:
     print(*pair_lines(root, names), sep="\n")
     for folder in folders:
         for name in ("models", "models-upright"):
-            if (folder / name).is_dir():
+            if (folder / name / SETTINGS).is_file():
                 print(f"\n## {folder.name}: {name}\n", *model_lines(folder / name), sep="\n")
 
 
