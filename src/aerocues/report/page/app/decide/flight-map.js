@@ -9,7 +9,7 @@ import {arrayOf, payload} from "../basis/payload.js";
 import {boundsOf, spanOf} from "../basis/statistics.js";
 import {state} from "../basis/state.js";
 import {openPair} from "../drawer/pair.js";
-import {FONT} from "../shell/figure.js";
+import {FONT} from "../shell/figure-layout.js";
 import {measuredAs, RIGHT_MATCHES} from "./candidates.js";
 import {rankedForPurpose} from "./purposes.js";
 

@@ -5,7 +5,7 @@ import {make} from "../basis/elements.js";
 import {shown} from "../basis/numbers.js";
 import {arrayOf} from "../basis/payload.js";
 import {EYE, projection, unitOf} from "./cloud-space.js";
-import {FONT} from "../shell/figure.js";
+import {FONT} from "../shell/figure-layout.js";
 
 /** @typedef {{width: number, height: number, pen: CanvasRenderingContext2D, image: ImageData, pixels: Uint32Array, depth: Float32Array}} Buffers */
 /** @type {Buffers | null} */

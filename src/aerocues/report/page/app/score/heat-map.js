@@ -7,7 +7,7 @@ import {isKnown, percent, valueText} from "../basis/numbers.js";
 import {payload} from "../basis/payload.js";
 import {spanOf} from "../basis/statistics.js";
 import {measureOptions} from "../shell/controls.js";
-import {FONT, widestText} from "../shell/figure.js";
+import {FONT, widestText} from "../shell/figure-layout.js";
 
 /** @typedef {{measure: Measure, panels: [norm: string, matcher: string][], bounds: Span, detectors: string[],
  *   descriptors: string[], columns: number, at: Map<string, number>}} Heat  `at` has the positions of combinations. */

@@ -2,7 +2,7 @@
 
 import {isPrinting, themeName, THEMES} from "../basis/colours.js";
 import {fileStem, saveCsv, saveFile} from "../basis/downloads.js";
-import {announce, make, safe} from "../basis/elements.js";
+import {announce, make, safe, unsafe} from "../basis/elements.js";
 import {CODES} from "../basis/entries.js";
 import {shownIn} from "../basis/filter.js";
 import {LIMITS} from "../basis/limits.js";
@@ -11,6 +11,7 @@ import {bytesOf} from "../basis/payload.js";
 import {currentEntry, state} from "../basis/state.js";
 import {explained} from "../basis/words.js";
 import {selectControl} from "./controls.js";
+import {fullLayout} from "./figure-layout.js";
 
 /** @type {Figure[]} */
 export const figures = [];
@@ -19,7 +20,6 @@ const NARROW = 480;
 const PRINTED_HEIGHT = 340;
 const PRINTED_SHARE = 0.7;
 const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
-const touched = window.matchMedia("(pointer: coarse)");
 
 /** @param {HTMLElement} parent @param {FigureSpec} spec */
 export function addFigure(parent, spec) {
@@ -146,66 +146,6 @@ function showNote(figure, drawn) {
     .filter(Boolean).join(". "));
 }
 
-/** @param {PlotDrawn} drawn @param {FigureContext} context @returns {Layout} */
-function fullLayout({layout, height}, {width, narrow, colours}) {
-  /** @type {Axis} */
-  const axis = {
-    gridcolor: colours.grid, linecolor: colours.line, zerolinecolor: colours.line, zeroline: false,
-    tickcolor: colours.line, automargin: true,
-  };
-  /** @type {Layout} */
-  const base = {
-    width, height, autosize: false, paper_bgcolor: colours.surface, plot_bgcolor: colours.surface,
-    font: {family: FONT, size: narrow ? 11 : 12, color: colours.ink},
-    margin: {l: 8, r: narrow ? 8 : 16, t: 8, b: 8, pad: 2},
-    hoverlabel: {bgcolor: colours.surface, bordercolor: colours.line,
-      font: {color: colours.ink, size: 12}, align: "left"},
-    dragmode: touched.matches ? false : "zoom",
-    legend: {orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom",
-      font: {size: narrow ? 10.5 : 11.5}, itemsizing: "constant"},
-    transition: {duration: 0},
-  };
-  /** @type {Layout} */
-  const merged = {...base, ...layout};
-  for (const part of ["margin", "legend", "font", "hoverlabel"]) {
-    merged[part] = {...base[part], ...layout[part]};
-  }
-  for (const name of Object.keys(layout).filter(key => /^[xy]axis\d*$/.test(key))) {
-    merged[name] = withAxis(axis, layout[name]);
-  }
-  return merged.yaxis2 ? merged : withKnownMargins(merged);
-}
-
-/** Computes the margins here, because Plotly would draw everything at least twice to find them.
- * @param {Layout} layout */
-function withKnownMargins(layout) {
-  const {xaxis, yaxis, margin} = layout;
-  if (xaxis?.type !== "category" && xaxis?.automargin) {
-    Object.assign(margin, {b: xaxis.title?.text ? 46 : 28});
-    xaxis.automargin = false;
-  }
-  if (yaxis?.type === "category" && yaxis.automargin) {
-    margin.l = widestText(yaxis.categoryarray.map(unsafe), yaxis.tickfont?.size ?? 12) + 10;
-    yaxis.automargin = false;
-  }
-  return layout;
-}
-
-const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
-export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
-
-/** @param {string[]} texts @param {number} size */
-export function widestText(texts, size) {
-  ruler.font = `${size}px ${FONT}`;
-  return Math.ceil(Math.max(0, ...texts.map(text => ruler.measureText(text).width)));
-}
-
-/** @param {Axis} axis @param {Axis} own @returns {Axis} */
-function withAxis(axis, own) {
-  const title = typeof own.title === "string" ? {text: own.title} : own.title;
-  return {...axis, ...own, title};
-}
-
 /** Saved figures use the light theme.
  * @param {Figure} figure @param {string} format */
 async function saveFigure(figure, format) {
@@ -258,11 +198,6 @@ function tableOfTraces(traces) {
     });
   }
   return [["series", "x", "y", "value_or_name"], rows];
-}
-
-/** @param {string} text */
-function unsafe(text) {
-  return text.replaceAll("&lt;", "<").replaceAll("&gt;", ">").replaceAll("&amp;", "&");
 }
 
 /** Marks figures as out of date and draws those near the window, one per frame, visible ones first.

@@ -3,7 +3,7 @@
 import {symbolPath} from "../basis/colours.js";
 import {makeSvg, withTips} from "../basis/elements.js";
 import {scaleOf} from "./drawn-axes.js";
-import {FONT, widestText} from "./figure.js";
+import {FONT, widestText} from "./figure-layout.js";
 
 const REACH = 20;
 const LEAST_DRAG = 8;
