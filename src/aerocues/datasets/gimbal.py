@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from pathlib import Path
 
-FIELDS = {
-    "height": "RelativeAltitude",
-    "pitch": "GimbalPitchDegree",
-    "yaw": "GimbalYawDegree",
-    "roll": "GimbalRollDegree",
-}
-# Attributes of the XMP packet, or elements of it.
-_FIELD = re.compile(rb"drone-dji:(\w+)\s*(?:=\s*\"|>)\s*([+-]?\d+(?:\.\d+)?)\s*[\"<]")
-_HEAD = 1 << 17
-"""Bytes of a file in which the packet is looked for: metadata comes before the image."""
+from aerocues.datasets.yaw import written_number
+
+FIELDS = ("RelativeAltitude", "GimbalPitchDegree", "GimbalYawDegree", "GimbalRollDegree")
 LOWEST = 1.0
 
 
@@ -37,18 +28,9 @@ class GimbalView:
     roll: float
 
 
-def gimbal_view(path: Path) -> GimbalView | None:
-    """From the XMP packet of a photo; None where it lacks a value, or is not above the ground.
-
-    Parameters
-    ----------
-    path : Path
-        A file that can be read.
-    """
-    with path.open("rb") as file:
-        head = file.read(_HEAD)
-    found = {name.decode(): float(value) for name, value in _FIELD.findall(head)}
-    if not found.keys() >= set(FIELDS.values()):
+def gimbal_view(xmp: bytes | str | None) -> GimbalView | None:
+    """From the XMP packet of a photo; None where it lacks a value, or is not above the ground."""
+    values = [value for name in FIELDS if (value := written_number(xmp, name)) is not None]
+    if len(values) < len(FIELDS) or values[0] < LOWEST:
         return None
-    view = GimbalView(**{name: found[field] for name, field in FIELDS.items()})
-    return view if view.height >= LOWEST else None
+    return GimbalView(*values)

@@ -18,8 +18,12 @@ def yaw_of(xmp: bytes | str | None) -> float | None:
     xmp : bytes, str or None
         The XMP packet of an image file.
     """
+    values = (written_number(xmp, name) for name in _NAMES)
+    return next((value for value in values if value is not None), None)
+
+
+def written_number(xmp: bytes | str | None, name: str) -> float | None:
+    """The number of a field of an XMP packet, whatever its prefix; None where there is none."""
     text = xmp.decode(errors="replace") if isinstance(xmp, bytes) else xmp or ""
-    for name in _NAMES:
-        if found := re.search(_WRITTEN.format(name=name), text):
-            return float(found[1])
-    return None
+    found = re.search(_WRITTEN.format(name=name), text)
+    return float(found[1]) if found else None

@@ -57,7 +57,7 @@ def _by_depth(view: TrueView) -> Array | None:
 
 
 def _on_flat_ground(source: FileSource, place: Sequence[float]) -> Array | None:
-    view = gimbal_view(source.path)
+    view = gimbal_view(source.header().xmp)
     if view is None:
         return None
     width, height = source.size()
