@@ -28,6 +28,7 @@ PROCESSES := -n 3 --dist worksteal
 
 # Extra arguments for pytest, for instance: make test PYTEST_ARGUMENTS="-k synthetic"
 PYTEST_ARGUMENTS :=
+STUDY :=
 
 OLDEST_VENV := .venv-oldest
 OLDEST_OPENCV := opencv-contrib-python-headless==4.11.0.86 numpy==2.2.6
@@ -55,7 +56,7 @@ LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-slow test-oldest-opencv test-light test-learned fresh-learned learned-weights lint lint-page audit docs bench tables lock clean
+.PHONY: help setup demo test test-slow test-oldest-opencv test-light test-learned fresh-learned learned-weights lint lint-page audit docs bench study tables lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-20s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -173,8 +174,14 @@ $(DOCS_INSTALLED): Makefile | $(BIN)/python
 bench: setup ## the benchmarks of the framework itself
 	@for benchmark in $$(grep -l __main__ benchmarks/*.py); do echo "== $$benchmark"; $(BIN)/python "$$benchmark" || exit; done
 
-tables: setup ## bring the tables of the guide up to date with the source
+# It goes on where it stopped; more words, such as --budget 30min, --dry-run, --only PART or --verify: STUDY="--budget 30min"
+study: setup ## measure the study, or go on with it: about 8 CPU hours; stored piece by piece in study/database
+	$(BIN)/python -m study.measure $(STUDY)
+	$(BIN)/python docs/study.py
+
+tables: setup ## bring the tables of the guide up to date with the source and the study
 	$(BIN)/python -m docs.tables
+	$(BIN)/python docs/study.py
 
 lock: setup ## pin the newest allowed versions in the files *.lock (needs uv)
 	$(LOCK) pyproject.toml --all-extras --group dev --upgrade --output-file requirements.lock
@@ -182,5 +189,5 @@ lock: setup ## pin the newest allowed versions in the files *.lock (needs uv)
 	echo onnxruntime | $(LOCK) - --upgrade --constraint requirements.lock --no-emit-package numpy --no-emit-package packaging --output-file $(LEARNED)/requirements.lock
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(LEARNED_VENV) $(TORCH_VENV) $(AUDIT_VENV) $(DOCS_VENV) site sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) .coverage .coverage.* build dist $(LEARNED)/build
+	rm -rf $(VENV) $(OLDEST_VENV) $(LIGHT_VENV) $(LEARNED_VENV) $(TORCH_VENV) $(AUDIT_VENV) $(DOCS_VENV) site sbom.cdx.json $(DEMO_FLIGHT) $(DEMO_RESULTS) $(DEMO_MODELS) $(DEMO_REPORT) study/work .coverage .coverage.* build dist $(LEARNED)/build
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache node_modules

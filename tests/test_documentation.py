@@ -315,8 +315,9 @@ def run_command(folder: Path, command: str, shown: str, *, exact: bool) -> None:
 
 
 # The thesis's page needs its measurements: tests/test_thesis.py runs it. What learned.md shows
-# needs aerocues-learned, whose own tests read the page.
-NOT_RUN = ("thesis.md", "learned.md")
+# needs aerocues-learned, whose own tests read the page. tests/cli/test_study_page.py runs that of
+# the study.
+NOT_RUN = ("thesis.md", "learned.md", "study.md")
 RUN = [page for page in PAGES if blocks(page) and page.name not in NOT_RUN]
 
 

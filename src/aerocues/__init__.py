@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from aerocues.report.report import write_report
     from aerocues.results.importing import import_results
     from aerocues.results.measured_results import Results
+    from aerocues.results.study import Study
     from aerocues.scoring.assessment import compare, score, validate
     from aerocues.scoring.compared import ComparedResults
     from aerocues.scoring.outcomes import Relations, relate_outcomes
@@ -65,6 +66,7 @@ _MODULES = {
     "DaskEngine": "evaluation.dask_engine",
     "Results": "results.measured_results",
     "import_results": "results.importing",
+    "Study": "results.study",
     "score": "scoring.assessment",
     "Ranking": "scoring.ranking",
     "validate": "scoring.assessment",
@@ -112,6 +114,7 @@ __all__ = [
     "Recommendation",
     "Relations",
     "Results",
+    "Study",
     "Tuned",
     "Used",
     "Validation",

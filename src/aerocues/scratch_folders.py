@@ -1,4 +1,7 @@
-"""Temporary folders whose names tell which process made them, to remove what killed ones left."""
+"""Folders for what may be deleted: temporary ones, and the cache.
+
+Names of temporary folders tell which process made them, to remove what killed ones left.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import os
 import platform
 import re
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,3 +57,16 @@ def _left_over() -> Iterator[Path]:
 def _host() -> str:
     """The machine: containers that share a folder have process numbers of their own."""
     return hashlib.sha256(platform.node().encode()).hexdigest()[:6]
+
+
+def cache_folder(kind: str) -> Path:
+    """Where what can be had again is kept; `AEROCUES_CACHE` names another place."""
+    if own := os.environ.get("AEROCUES_CACHE"):
+        return Path(own) / kind
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "aerocues" / kind

@@ -72,10 +72,11 @@ DatasetArgument = Annotated[
     ),
 ]
 ResultsArgument = Annotated[
-    Path, typer.Argument(metavar="RESULTS", help="A results folder or packed results.")
+    Path, typer.Argument(metavar="RESULTS", help="A results folder, packed results or study:PART.")
 ]
 ResultsArguments = Annotated[
-    list[Path], typer.Argument(metavar="RESULTS", help="Results folders or packed results.")
+    list[Path],
+    typer.Argument(metavar="RESULTS", help="Results folders, packed results or study:PART."),
 ]
 CombinationsOption = Annotated[
     str | None,

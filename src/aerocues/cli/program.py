@@ -26,6 +26,7 @@ from aerocues.cli import (
     score,
     simulate,
     status,
+    study,
     tune,
     use,
     validate,
@@ -67,6 +68,7 @@ app.command("validate")(validate.validate)
 app.command("compare")(compare.compare)
 app.command("reconstruct")(reconstruct.reconstruct)
 app.command("report")(report.report)
+app.command("study")(study.study)
 app.command("use")(use.use)
 app.command("tune", short_help="Search parameters; keep those that help on other scenes.")(
     tune.tune

@@ -19,7 +19,7 @@ from typing import IO, Any, get_args
 
 from aerocues.methods.declarations import Declaration
 from aerocues.methods.descriptors import DescriptorType
-from aerocues.scratch_folders import scratch_prefix
+from aerocues.scratch_folders import cache_folder, scratch_prefix
 
 SECONDS = 30.0
 """That an import may take; packages of neural networks take up to 10."""
@@ -34,7 +34,7 @@ def tried_declaration(entry: EntryPoint, group: str) -> Declaration:
 
     It is imported again only after its files, or the packages that are installed, have changed.
     """
-    place = _cache_folder() / f"{_digest([entry.value, group, sys.prefix])}.json"
+    place = cache_folder("plug-ins") / f"{_digest([entry.value, group, sys.prefix])}.json"
     key = _digest([FORM, sys.version, entry.value, group, list(_states(entry))])
     found = _remembered(place, key)
     if found is None:
@@ -131,19 +131,6 @@ def _states(entry: EntryPoint) -> Iterator[object]:
 
 def _digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:32]
-
-
-def _cache_folder() -> Path:
-    """Where declarations are remembered; `AEROCUES_CACHE` names another place."""
-    if own := os.environ.get("AEROCUES_CACHE"):
-        return Path(own) / "plug-ins"
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "aerocues" / "plug-ins"
 
 
 def _remembered(place: Path, key: str) -> Declaration | None:

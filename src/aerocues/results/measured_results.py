@@ -16,6 +16,7 @@ from aerocues.results.failures import failures_of
 from aerocues.results.plan_table import TIMED_ALONE
 from aerocues.results.statuses import RETRIED
 from aerocues.results.store import Store
+from aerocues.results.study_place import place_of_results
 from aerocues.results.timing import DISTURBED
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class Results:
     Parameters
     ----------
     folder : path
-        The folder, or a file made by `pack`.
+        The folder, a file made by `pack`, or ``study:NAME`` for a part of the study.
 
     Raises
     ------
@@ -75,7 +76,7 @@ class Results:
     """
 
     def __init__(self, folder: str | Path) -> None:
-        self._path = place = Path(folder)
+        self._path = place = place_of_results(folder)
         if place.is_file():
             from aerocues.results.packing import unpack
 

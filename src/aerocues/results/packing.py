@@ -50,7 +50,7 @@ def folder_content(
 
 
 def packed(store: Store) -> bytes:
-    """A results folder with all its content as a zip file; equal content gives equal files.
+    """A results folder with all its content as a zip file; see `zipped`.
 
     Raises
     ------
@@ -62,6 +62,11 @@ def packed(store: Store) -> bytes:
     content = folder_content(store.run(), store.plan(), store.rows(), found)
     for cloud in store.cloud_files():
         content[f"{CLOUDS}/{cloud.name}"] = cloud.read_bytes()
+    return zipped(content)
+
+
+def zipped(content: Mapping[str, bytes]) -> bytes:
+    """Files by name as a zip file; equal content gives equal files."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in content.items():

@@ -1,0 +1,378 @@
+"""Write what the study found: docs/study.md, the card of its data, and a sentence of the README.
+
+``python docs/study.py`` rewrites what stands between ``<!-- NAME -->`` marks; the tests fail where
+it is out of date. A statement is made only where the database holds its rows.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from scipy.stats import spearmanr
+
+import aerocues
+from aerocues.errors import AerocuesError
+from aerocues.phrases import count, likelihood
+from aerocues.results.schema import Column
+from aerocues.results.study_dictionary import dictionary
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+DATABASE = REPOSITORY / "study" / "database"
+NOT_YET = "*Not measured yet.*"
+LIKELY = 0.05
+MOST_NAMED = 4
+
+CONDITIONS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("nadir, all images with the same heading", ("suburb-nadir-tuned",), "efficiency"),
+    ("nadir, strips there and back (turned by 180°)", ("brighton-flown-tuned",), "efficiency"),
+    ("oblique", ("suburb-oblique-tuned", "fields-oblique-tuned"), "efficiency"),
+    ("oblique, there and back", ("suburb-natural-tuned", "fields-natural-tuned"), "efficiency"),
+    ("low texture (fields)", ("fields-nadir-tuned",), "efficiency"),
+    ("different kinds of image (Oxford)", ("oxford-tuned",), "robust"),
+    ("neighbouring images of five projects", ("uav-tuned",), "efficiency"),
+    ("boards: all of these flights", ("brighton-flown-tuned", "suburb-nadir-tuned"), "speed"),
+)
+"""What a practitioner flies, the parts of the study that show it, and the objective."""
+
+BINARY = """SELECT detector, descriptor, matcher, COUNT(*) AS pairs,
+AVG(COALESCE(coverage, 0)) AS coverage, MEDIAN(total_seconds) AS seconds
+FROM results WHERE norm = 'HAM' AND preset = 'tuned'
+GROUP BY detector, descriptor, matcher HAVING MEDIAN(total_seconds) < 0.05
+ORDER BY pairs DESC, coverage DESC LIMIT 5"""
+FLANN = """SELECT norm, matcher, COUNT(*) AS pairs, AVG(match_seconds_cpu) AS seconds,
+AVG(COALESCE("ref_matches@3", 0)) AS right_matches FROM results
+WHERE part = 'brighton-flann-8000' GROUP BY norm, matcher ORDER BY norm, matcher"""
+OBLIQUE = """SELECT detector,
+AVG(CASE WHEN part = 'suburb-nadir-tuned' THEN COALESCE("ref_matches@3", 0) END) AS nadir,
+AVG(CASE WHEN part = 'suburb-oblique-tuned' THEN COALESCE("ref_matches@3", 0) END) AS oblique
+FROM results WHERE descriptor = 'BRISK' AND matcher = 'BF' GROUP BY detector ORDER BY detector"""
+TURNED = """SELECT detector,
+AVG(CASE WHEN reference_turn <= 60 THEN COALESCE("ref_matches@3", 0) END) AS same_heading,
+AVG(CASE WHEN reference_turn > 60 THEN COALESCE("ref_matches@3", 0) END) AS turned
+FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK' AND matcher = 'BF'
+GROUP BY detector ORDER BY detector"""
+QUERIES: dict[str, tuple[str, tuple[str, ...]]] = {
+    "binary": (BINARY, ()),
+    "flann": (FLANN, ("brighton-flann-8000",)),
+    "oblique": (OBLIQUE, ("suburb-nadir-tuned", "suburb-oblique-tuned")),
+    "turned": (TURNED, ("brighton-flown-tuned",)),
+}
+"""Questions to the database alone, and the parts that answer them."""
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What the database says, as Markdown."""
+
+    place: Path = DATABASE
+
+    @cached_property
+    def study(self) -> aerocues.Study | None:
+        """The database; None where nothing is in it."""
+        try:
+            return aerocues.Study(self.place)
+        except AerocuesError:
+            return None
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The parts that are there."""
+        return self.study.names if self.study else ()
+
+    def results(self, names: Sequence[str]) -> list[aerocues.Results]:
+        """The results of those of the parts that are there."""
+        study = self.study
+        return [study.part(name) for name in names if name in study.names] if study else []
+
+    def table(self, query: str) -> pl.DataFrame:
+        """The answer to a query; empty where the parts that it needs are missing."""
+        text, needed = QUERIES[query]
+        if self.study is None or not set(needed) <= set(self.names):
+            return pl.DataFrame()
+        return self.study.sql(text)
+
+    def measured(self) -> str:
+        """How much there is."""
+        if self.study is None:
+            return NOT_YET
+        parts = self.study.parts()
+        rows, models = int(parts["rows"].sum()), int(parts["models"].sum())
+        failed = rows - int(parts["ok"].sum())
+        most = parts.select(pl.max("combinations")).item()
+        return (
+            f"So far: {count(rows, 'row')} of {count(len(parts), 'part')}, of which "
+            f"{failed:,} failed or are not better than chance, and {count(models, 'model')}; up to "
+            f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours."
+        )
+
+    def main_finding(self) -> str:
+        """The first condition that was measured, in a sentence with intervals."""
+        for title, names, _ in (CONDITIONS[1], *CONDITIONS):
+            if found := self.results(names[:1]):
+                frame = aerocues.score(found[0]).frame("combination")
+                best, pairs = frame.row(0, named=True), found[0].table()["pair"].n_unique()
+                return (
+                    f"**{title[0].upper()}{title[1:]}: {best['combination']}** has the highest "
+                    f"CUES of {count(len(frame), 'combination')} on {count(pairs, 'pair')}, "
+                    f"{best['score']:.2f} (95 % interval {best['score_low']:.2f} to "
+                    f"{best['score_high']:.2f}), and is the best with a probability of "
+                    f"{likelihood(best['probability_best'])}."
+                )
+        return NOT_YET
+
+    def advice(self) -> str:
+        """What to take under each condition."""
+        lines = [("you fly", "take", "sure", "may be as good", "measured")]
+        for title, names, objective in CONDITIONS:
+            if found := self.results(names):
+                choice = aerocues.choose(found, objective)
+                first = choice.ranked["probability"][0]
+                others = choice.ranked[1:].filter(pl.col("probability") >= LIKELY)
+                named = others.sort("probability", descending=True)["combination"].to_list()
+                more = f" and {len(named) - MOST_NAMED} more" if named[MOST_NAMED:] else ""
+                lines.append(
+                    (
+                        title,
+                        f"`{choice.best}`",
+                        "" if first is None else likelihood(first),
+                        ", ".join(f"`{each}`" for each in named[:MOST_NAMED]) + more,
+                        f"{len(choice.ranked)} combinations, {choice.pairs} pairs",
+                    )
+                )
+            else:
+                lines.append((title, NOT_YET, "", "", ""))
+        return markdown(lines)
+
+    def suffers(self, query: str, before: str, after: str) -> str:
+        """Which detector loses most of its right matches, and all others."""
+        found = self.table(query)
+        if not found.is_empty():
+            kept = (pl.col(after) / pl.col(before)).alias("kept")
+            found = found.drop_nulls().filter(pl.col(before) > 0).with_columns(kept).sort("kept")
+        if found.is_empty():
+            return f"{console(query)}\n\n{NOT_YET}"
+        least, most = found.row(0, named=True), found.row(-1, named=True)
+        told = (
+            f"{least['detector']} suffers most: it keeps {least['kept']:.0%} of its right matches "
+            f"({least[before]:.0f} a pair become {least[after]:.0f}); {most['detector']} keeps "
+            f"{most['kept']:.0%}."
+        )
+        lines = [("detector, with BRISK", before.replace("_", " "), after, "kept")]
+        for row in found.iter_rows(named=True):
+            figures = (f"{row[before]:.0f}", f"{row[after]:.0f}", f"{row['kept']:.0%}")
+            lines.append((row["detector"], *figures))
+        return f"{console(query)}\n\n{told}\n\n{markdown(lines)}"
+
+    def oblique(self) -> str:
+        """Detectors on an oblique layer against a nadir one."""
+        return self.suffers("oblique", "nadir", "oblique")
+
+    def turned(self) -> str:
+        """Detectors on turned pairs against others."""
+        return self.suffers("turned", "same_heading", "turned")
+
+    def binary(self) -> str:
+        """The best binary combinations under 50 ms."""
+        found = self.table("binary")
+        if found.is_empty():
+            return f"{console('binary')}\n\n{NOT_YET}"
+        lines = [("combination", "pairs", "coverage", "ms")]
+        for row in found.iter_rows(named=True):
+            name = f"`{row['detector']}-{row['descriptor']}-HAM-{row['matcher']}`"
+            figures = (f"{row['pairs']}", f"{row['coverage']:.3f}", f"{row['seconds'] * 1e3:.0f}")
+            lines.append((name, *figures))
+        return f"{console('binary')}\n\n{markdown(lines)}"
+
+    def flann(self) -> str:
+        """Brute force against FLANN at 8,000 keypoints."""
+        found = self.table("flann")
+        if found.is_empty():
+            return f"{console('flann')}\n\n{NOT_YET}"
+        lines = [("descriptors", "matcher", "pairs", "CPU s to match", "right matches a pair")]
+        for row in found.iter_rows(named=True):
+            kind = {"HAM": "strings of bits", "L2": "numbers"}[row["norm"]]
+            figures = (f"{row['seconds']:.2f}", f"{row['right_matches']:.0f}")
+            lines.append((kind, row["matcher"], str(row["pairs"]), *figures))
+        return f"{console('flann')}\n\n{markdown(lines)}"
+
+    def criteria(self) -> str:
+        """What the choice of criteria and counting failures change in the rankings."""
+        lines: list[tuple[str, ...]] = [
+            ("part", "default", "inliers", "thesis", "default ~ inliers", "default ~ thesis")
+        ]
+        for name in (name for name in self.names if name.endswith("-tuned")):
+            [found] = self.results([name])
+            frames = {
+                preset: aerocues.score(found, preset, resamples=2).frame("combination")
+                for preset in ("default", "inliers", "thesis")
+            }
+            bests = [f"`{frame['combination'][0]}`" for frame in frames.values()]
+            default = frames["default"]
+            agreement = [rank_correlation(default, frames[p]) for p in ("inliers", "thesis")]
+            lines.append((f"`{name}`", *bests, *agreement))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def predictors(self) -> str:
+        """Which figures of pairs predict how many images a model holds."""
+        lines = [("part", "models", "figures of pairs that predict registered images best")]
+        for name in self.names:
+            [found] = self.results([name])
+            try:
+                related = aerocues.relate_outcomes(found)
+            except AerocuesError:
+                continue
+            if "registered_images" not in related.outcomes:
+                continue
+            own = related.spearman[:, related.outcomes.index("registered_images")]
+            order = [place for place in np.argsort(-np.abs(own)) if np.isfinite(own[place])]
+            told = ", ".join(f"`{related.features[p]}` {own[p]:.2f}" for p in order[:MOST_NAMED])
+            lines.append((f"`{name}`", str(len(related.combinations)), told))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def presets(self) -> str:
+        """What `tuned` gains over the parameters of the thesis."""
+        right, share = "right matches a pair", "their share of all"
+        heads = (f"{right}: thesis", "tuned", f"{share}: thesis", "tuned")
+        lines: list[tuple[str, ...]] = [("images", "combinations", *heads)]
+        for images in ("synthetic", "oxford", "uav"):
+            names = [f"{images}-thesis", f"{images}-tuned"]
+            if set(names) <= set(self.names):
+                thesis, tuned = (each.table() for each in self.results(names))
+                lines.append((images, *in_common(thesis, tuned)))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def learned(self) -> str:
+        """The best of the learned set beside SIFT, by part."""
+        return self._ranked([name for name in self.names if name.endswith("-learned")])
+
+    def extra(self) -> str:
+        """The best of the extra set."""
+        return self._ranked([name for name in self.names if name.endswith("-extra")])
+
+    def _ranked(self, names: Sequence[str]) -> str:
+        lines = [("part", "combination", "CUES (95 %)", "ranks (95 %)")]
+        for name in names:
+            [found] = self.results([name])
+            for row in aerocues.score(found).frame("combination").head(5).iter_rows(named=True):
+                score = f"{row['score']:.2f} ({row['score_low']:.2f} to {row['score_high']:.2f})"
+                ranks = f"{row['rank_low']} to {row['rank_high']}"
+                lines.append((f"`{name}`", f"`{row['combination']}`", score, ranks))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def pixels(self) -> str:
+        """Whether the answer at 1,000 pixels holds at 4,000."""
+        found = self.results(["mini-1000", "mini-4000"])
+        if len(found) < 2:
+            return NOT_YET
+        small, large = (aerocues.score(each, resamples=2).frame("combination") for each in found)
+        times = [each.table().select(pl.median("total_seconds")).item() for each in found]
+        agree = rank_correlation(small, large)
+        return (
+            f"Ranks at 1,000 and 4,000 pixels have a correlation of {agree} "
+            f"({len(small)} combinations). The best is `{small['combination'][0]}` at 1,000 and "
+            f"`{large['combination'][0]}` at 4,000; an image and a pair take {times[0]:.2f} s and "
+            f"{times[1]:.2f} s in the median."
+        )
+
+    def parts(self) -> str:
+        """The parts with machines, versions and licences."""
+        if self.study is None:
+            return NOT_YET
+        texts = ("part", "what it is", "licence of the images", "preset")
+        lines: list[tuple[str, ...]] = [
+            (*texts, "combinations", "pairs", "rows", "models", "CPU h")
+        ]
+        for row in self.study.parts().iter_rows(named=True):
+            named = [row[name] or "" for name in ("title", "licence", "preset")]
+            counts = [f"{row[name]:,}" for name in ("combinations", "pairs", "rows", "models")]
+            lines.append((f"`{row['part']}`", *named, *counts, f"{row['cpu_hours']:.2f}"))
+        return markdown(lines)
+
+    def versions(self) -> str:
+        """The machines and versions behind the rows."""
+        if self.study is None:
+            return NOT_YET
+        parts = self.study.parts()
+        columns = {"aerocues": "aerocues", "opencv": "OpenCV", "machine": "machine"}
+        return "\n".join(
+            f"- {label}: {', '.join(parts[name].drop_nulls().unique().sort())}"
+            for name, label in columns.items()
+        )
+
+    def dictionary(self) -> str:
+        """Every column of every table."""
+        head = ("column", "type", "unit", "definition")
+        tables = {name: markdown([head, *described(own)]) for name, own in dictionary().items()}
+        return "\n\n".join(f"### {name}\n\n{table}" for name, table in tables.items())
+
+
+def console(query: str) -> str:
+    """A query as a command."""
+    text = QUERIES[query][0].replace('"', r"\"").replace("\n", " \\\n")
+    return f'```console\n$ aerocues study --sql "{text}"\n```'
+
+
+def described(columns: Sequence[Column]) -> Iterator[tuple[str, ...]]:
+    """A row a column."""
+    for each in columns:
+        yield f"`{each.name}`", each.type, each.unit, each.definition
+
+
+def rank_correlation(first: pl.DataFrame, second: pl.DataFrame) -> str:
+    """Spearman's correlation of the scores of what two rankings have in common."""
+    both = first.select("combination", "score").join(second, on="combination", suffix="_other")
+    if len(both) < 3:
+        return ""
+    return f"{spearmanr(both['score'], both['score_other']).statistic:.2f}"
+
+
+def in_common(thesis: pl.DataFrame, tuned: pl.DataFrame) -> tuple[str, ...]:
+    """Means of two runs over the combinations and pairs that both measured."""
+    keys = ["pair", "detector", "descriptor", "norm", "matcher"]
+    figures = ("ref_matches@3", "ref_precision@3")
+    names = [name for figure in figures for name in (figure, f"{figure}_right")]
+    both = thesis.select(*keys, *figures).join(tuned.select(*keys, *figures), on=keys)
+    means = both.select(pl.col(names).fill_null(0).mean()).row(0)
+    number = both.select(keys[1:]).n_unique()
+    return (str(number), *(f"{m:.0f}" for m in means[:2]), *(f"{m:.2f}" for m in means[2:]))
+
+
+def markdown(lines: Sequence[Sequence[str]]) -> str:
+    """Rows as a Markdown table; the first one is the head."""
+    head, *body = lines
+    return "\n".join(f"| {' | '.join(line)} |" for line in (head, ["---"] * len(head), *body))
+
+
+PAGES: dict[str, tuple[str, ...]] = {
+    "docs/study.md": (
+        *("measured", "advice", "main-finding", "binary", "flann", "oblique", "turned", "criteria"),
+        *("predictors", "presets", "learned", "extra", "pixels"),
+    ),
+    "study/README.md": ("parts", "versions", "dictionary"),
+    "README.md": ("main-finding",),
+}
+
+
+def rendered(page: str, findings: Findings) -> str:
+    """The text of a page with what the database says now."""
+    text = (REPOSITORY / page).read_text(encoding="utf-8")
+    for name in PAGES[page]:
+        written: Callable[[], str] = getattr(findings, name.replace("-", "_"))
+        between = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end of {name} -->)", re.DOTALL)
+        place = between.search(text)
+        if place is None:
+            raise SystemExit(f"{page} has no place for {name}")
+        text = f"{text[: place.start()]}{place[1]}{written()}\n{place[2]}{text[place.end() :]}"
+    return text
+
+
+if __name__ == "__main__":
+    found = Findings()
+    for page in PAGES:
+        (REPOSITORY / page).write_text(rendered(page, found), encoding="utf-8")

@@ -1,0 +1,249 @@
+"""Measure the study: `make study`, or `python -m study.measure --help`.
+
+It goes on where it stopped, row by row; after each step the part is stored in the database.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import aerocues
+from aerocues.arguments import seconds_of
+from aerocues.errors import AerocuesError, StoreError
+from aerocues.phrases import count, spoken_seconds
+from aerocues.progress import Event
+from aerocues.results.study import add_part
+from study.flights import make_flight
+from study.plan import CONFIGURATION, FOLDER, Plan, Step, read_plan
+
+DATABASE, WORK = FOLDER / "database", FOLDER / "work"
+DATA = Path(os.environ.get("AEROCUES_SHARED_DATA", FOLDER.parent.parent / "shared" / "data"))
+TOLD_EVERY = 60.0
+
+
+class BudgetSpentError(Exception):
+    """The time that was given is up; what is finished is stored."""
+
+
+@dataclass
+class Study:
+    """A study that is being measured.
+
+    Parameters
+    ----------
+    plan : Plan
+    data : path
+        Folder of the real images.
+    work : path
+        Folder of the results folders and flights; large, and not part of the database.
+    database : path
+    budget : float or None
+        Wall seconds until it stops; None for no limit.
+    engine : Engine, optional
+        Where units run; by default worker processes on this machine.
+    workers : int, optional
+    tell : callable
+        Called with lines about the progress.
+    """
+
+    plan: Plan
+    data: Path
+    work: Path
+    database: Path
+    budget: float | None = None
+    engine: Any = None
+    workers: int | None = None
+    tell: Callable[[str], None] = print
+    _began: float = field(default_factory=time.monotonic)
+    _told: float = 0.0
+
+    def hours(self) -> dict[str, dict[str, float]]:
+        """CPU seconds and rows of each step so far."""
+        file = self.work / "hours.json"
+        return dict(json.loads(file.read_text())) if file.is_file() else {}
+
+    def measure(self, parts: Sequence[str] = ()) -> bool:
+        """Measure the parts, all by default; whether they are finished."""
+        for step in self.plan.of(parts):
+            if missing := step.missing():
+                self.tell(f"{step.name}: skipped, as {', '.join(missing)} is not installed")
+                continue
+            try:
+                self.make(step)
+            except BudgetSpentError:
+                self.tell(f"{step.name}: the budget is spent; the same command goes on from here")
+                return False
+        return True
+
+    def make(self, step: Step) -> None:
+        """Make one step, or what is left of it, and store the part."""
+        before, used = self._amount(step), _cpu_seconds()
+        try:
+            self._measure_rows(step) if step.round else self._make_models(step)
+        finally:
+            self._note(step, _cpu_seconds() - used, self._amount(step) - before)
+        self.store(step)
+
+    def store(self, step: Step) -> None:
+        """Store the part of a step in the database; StoreError if that becomes too large."""
+        part = step.part
+        spent = sum(
+            row["seconds"] for name, row in self.hours().items() if name.split()[0] == part.name
+        )
+        facts = {
+            "title": part.title,
+            "licence": part.licence,
+            "cpu_hours": round(spent / 3600, 3),
+            "steps_done": [n.split()[1] for n in self.hours() if n.split()[0] == part.name],
+        }
+        folder = add_part(self.database, part.name, self.work / part.name, facts)
+        size = sum(file.stat().st_size for file in self.database.rglob("*.parquet")) / 1e6
+        self.tell(f"{step.name}: stored in {folder.name}; the database has {size:.1f} MB")
+        if size > self.plan.max_megabytes:
+            raise StoreError(
+                f"the database has {size:.1f} MB, more than {self.plan.max_megabytes:g}; "
+                "leave a part out"
+            )
+
+    def dataset(self, step: Step) -> aerocues.Dataset:
+        """The images of a step, with the pairs to measure."""
+        return aerocues.open_dataset(self.images(step), **step.part.open)
+
+    def images(self, step: Step) -> str:
+        """The images of a step in text form; flights are made where they are missing."""
+        part, flights = step.part, self.work / "flights"
+        for name, settings in self.plan.flights.items():
+            if f"{{flights}}/{name}" in part.dataset:
+                make_flight(settings, flights / name, self.data, self.watch)
+        return part.dataset.format(data=self.data, flights=flights)
+
+    def watch(self, event: Event) -> None:
+        """Tell how it goes on once a minute; BudgetSpentError when the time is up."""
+        now = time.monotonic()
+        if now - self._told > TOLD_EVERY:
+            self._told = now
+            self.tell(f"  {spoken_seconds(now - self._began)}: {event}")
+        if self.budget is not None and now - self._began > self.budget:
+            raise BudgetSpentError
+
+    def _measure_rows(self, step: Step) -> None:
+        assert step.round is not None
+        arguments = {**step.part.run, **step.round.run}
+        engine = {"workers": self.workers} if self.engine is None else {"engine": self.engine}
+        aerocues.run(
+            self.dataset(step),
+            step.combinations,
+            self.work / step.part.name,
+            **arguments,
+            **engine,
+            progress=self.watch,
+        )
+
+    def _make_models(self, step: Step) -> None:
+        terms = dict(step.part.models)
+        for name in ("combinations", "seconds_each"):
+            terms.pop(name)
+        results = self.work / step.part.name
+        aerocues.reconstruct(
+            self.images(step),
+            step.combinations,
+            self.work / f"{step.part.name}-models",
+            results=results,
+            **{"equal_footing": False, "workers": self.workers, **terms},
+            progress=self.watch,
+        )
+
+    def _amount(self, step: Step) -> int:
+        """Rows, or models, that are there."""
+        folder = self.work / step.part.name
+        if not (folder / "run.json").is_file():
+            return 0
+        results = aerocues.Results(folder)
+        return len(results.table() if step.round else results.reconstructions())
+
+    def _note(self, step: Step, seconds: float, rows: int) -> None:
+        known = self.hours()
+        old = known.get(step.name, {"seconds": 0.0, "rows": 0})
+        known[step.name] = {"seconds": old["seconds"] + seconds, "rows": old["rows"] + rows}
+        self.work.mkdir(parents=True, exist_ok=True)
+        (self.work / "hours.json").write_text(json.dumps(known, indent=2) + "\n")
+
+
+def _cpu_seconds() -> float:
+    """CPU seconds of this process and its finished workers, without those of a cluster."""
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def print_hours(steps: Sequence[Step], measured: Mapping[str, Mapping[str, float]]) -> None:
+    """The rows and CPU hours of each step, and of all."""
+    total = 0.0
+    for step in steps:
+        if missing := step.missing():
+            print(f"{step.name:34s} needs {', '.join(missing)}")
+            continue
+        seconds = step.seconds(measured)
+        total += seconds
+        unit = "row" if step.round else "model"
+        print(f"{step.name:34s} {count(step.amount(), unit):>14s} {seconds / 3600:6.2f} CPU h")
+    print(f"{'all':34s} {'':14s} {total / 3600:6.2f} CPU h")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """The program; 0 if the study is finished, 3 if the budget was spent, 2 for wrong input."""
+    parser = argparse.ArgumentParser(description="Measure the study, or go on with it.")
+    parser.add_argument("--configuration", type=Path, default=CONFIGURATION)
+    parser.add_argument("--only", action="append", default=[], metavar="PART")
+    parser.add_argument("--budget", metavar="TIME", help="stop after this time, such as 30min")
+    parser.add_argument("--dry-run", action="store_true", help="print the hours of each step")
+    parser.add_argument("--verify", action="store_true", help="measure 5 %% of the rows again")
+    parser.add_argument("--workers", type=int, metavar="N")
+    parser.add_argument("--engine", choices=("local", "dask"), default="local")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://host:8786")
+    parser.add_argument("--data", type=Path, default=DATA, metavar="DIR", help="real images")
+    parser.add_argument("--work", type=Path, default=WORK, metavar="DIR")
+    parser.add_argument("--database", type=Path, default=DATABASE, metavar="DIR")
+    asked = parser.parse_args(words)
+    try:
+        budget = None if asked.budget is None else seconds_of("budget", asked.budget)
+        study = Study(
+            plan=read_plan(asked.configuration),
+            data=asked.data,
+            work=asked.work,
+            database=asked.database,
+            budget=budget,
+            engine=_engine(asked),
+            workers=asked.workers,
+        )
+        if asked.dry_run:
+            print_hours(study.plan.of(asked.only), study.hours())
+            return 0
+        if asked.verify:
+            from study.verify import verify
+
+            return verify(study, asked.only)
+        return 0 if study.measure(asked.only) else 3
+    except AerocuesError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def _engine(asked: argparse.Namespace) -> Any:
+    if asked.engine == "local":
+        return None
+    from distributed import Client
+
+    return aerocues.DaskEngine(Client(asked.scheduler))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

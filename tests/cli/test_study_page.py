@@ -1,0 +1,147 @@
+"""The page of the study: every number is what the database says, and its commands run."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import aerocues
+from aerocues.results.packing import folder_content
+from aerocues.results.plan_table import plan_of
+from aerocues.results.schema import empty_row, polars_schema
+from aerocues.results.study import add_part
+from docs.study import DATABASE, NOT_YET, PAGES, QUERIES, Findings, console, rendered
+from tests.cli.conftest import Call
+from tests.made_once import made_once
+from tests.test_documentation import REPOSITORY, blocks
+
+PAGE = REPOSITORY / "docs" / "study.md"
+NAMES = (
+    *(
+        "brighton-flown-tuned",
+        "suburb-nadir-tuned",
+        "suburb-oblique-tuned",
+        "uav-thesis",
+        "uav-tuned",
+    ),
+    *("brighton-flann-8000", "mini-1000", "mini-4000", "uav-learned"),
+)
+
+NEED_MORE = ("binary", "extra", "oblique", "predictors", "turned")
+"""Statements for which the few rows of the tests do not suffice."""
+
+
+@pytest.fixture(scope="module")
+def findings() -> Findings:
+    """What the database of the checkout says."""
+    return Findings()
+
+
+@pytest.fixture(scope="module")
+def stand_in(finished: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database in which all parts hold the same few rows."""
+
+    def make(folder: Path) -> None:
+        for name in NAMES:
+            facts = {"title": name, "licence": "ours", "cpu_hours": 0.01}
+            add_part(folder / "database", name, finished, facts)
+
+    return made_once(tmp_path_factory, "stand-in-study", make)[0] / "database"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_numbers_follow_the_database(page: str, findings: Findings) -> None:
+    text = (REPOSITORY / page).read_text(encoding="utf-8")
+    assert text == rendered(page, findings), "out of date; run: make tables"
+
+
+@pytest.mark.parametrize("name", sorted({name for names in PAGES.values() for name in names}))
+def test_each_statement_is_made_of_rows_that_are_there(
+    name: str, stand_in: Path, tmp_path: Path
+) -> None:
+    filled = getattr(Findings(stand_in), name.replace("-", "_"))()
+    without_rows = getattr(Findings(tmp_path), name.replace("-", "_"))()
+    assert "nan" not in filled.lower()
+    if name == "dictionary":
+        assert filled == without_rows
+        return
+    assert NOT_YET in without_rows
+    if name not in NEED_MORE:
+        assert filled != without_rows
+
+
+def test_who_suffers_most_is_told(tmp_path: Path) -> None:
+    right = {"suburb-nadir-tuned": (100.0, 50.0), "suburb-oblique-tuned": (80.0, None)}
+    for part, numbers in right.items():
+        rows = [
+            {
+                **empty_row(),
+                "dataset": part,
+                "pair": 0,
+                "detector": detector,
+                "descriptor": "BRISK",
+                "norm": "HAM",
+                "matcher": "BF",
+                "row_key": detector,
+                "settings_key": "one",
+                "status": "ok",
+                "ref_matches@3": number,
+            }
+            for detector, number in zip(("ORB", "STAR"), numbers, strict=True)
+        ]
+        table = pl.DataFrame(rows, schema=polars_schema())
+        content = folder_content({"settings_key": "one"}, plan_of(table), table, None)
+        for name, data in content.items():
+            (tmp_path / part / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / part / name).write_bytes(data)
+    told = Findings(tmp_path).oblique()
+    assert "STAR suffers most: it keeps 0% of its right matches (50 a pair become 0)" in told
+    assert "ORB keeps 80%" in told
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_the_questions_are_asked_as_the_page_shows(query: str, stand_in: Path, call: Call) -> None:
+    shown = console(query)
+    assert shown in PAGE.read_text(encoding="utf-8")
+    command = shown.split("$ ", 1)[1].removesuffix("\n```").replace("\\\n", " ")
+    _, verb, *words = shlex.split(command)
+    asked = call(verb, stand_in, *words)
+    assert asked.code == 0, asked.err
+    assert asked.out == call(verb, stand_in, "--sql", QUERIES[query][0]).out
+
+
+def test_its_other_commands_run(
+    stand_in: Path, call: Call, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AEROCUES_STUDY", str(stand_in))
+    ran = 0
+    for block in blocks(PAGE):
+        for command, _ in block.commands():
+            if not command.startswith("aerocues") or "FROM results" in command:
+                continue
+            words = shlex.split(command.replace("PART", "uav-tuned"))[1:]
+            assert call(*words).code == 0, command
+            ran += 1
+        if block.language == "py":
+            exec(block.text, {})
+            ran += 1
+    assert ran == 4
+
+
+def test_the_database_is_small_and_has_no_places() -> None:
+    if not DATABASE.is_dir():
+        pytest.skip("nothing is measured yet")
+    assert sum(file.stat().st_size for file in DATABASE.rglob("*")) < 30e6
+    study = aerocues.Study(DATABASE)
+    for name in study.names:
+        facts = study.part(name).settings
+        assert "source" not in facts["dataset"]
+        assert facts.get("features") is None
+        messages = study.part(name).table()["message"].drop_nulls()
+        assert not any(
+            re.search(r"(?<![\w.~/-])/(?:root|tmp|home|mnt)/", each) for each in messages
+        )

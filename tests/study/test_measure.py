@@ -1,0 +1,128 @@
+"""The program that measures the study, with a tiny configuration."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import aerocues
+from aerocues.errors import ArgumentError
+from study.measure import main
+from study.plan import CONFIGURATION, read_plan
+from study.verify import differing
+from tests.cli.conftest import shared_views
+from tests.made_once import made_once
+
+TINY = """
+max_megabytes = 1
+[defaults.run]
+timing = "estimated"
+max_keypoints = 300
+[[round]]
+name = "first"
+combinations = "ORB-ORB-HAM-BF,GFTT-BRIEF-HAM-BF"
+seconds_per_row = 0.5
+[[round]]
+name = "second"
+combinations = "ORB-ORB-HAM-FLANN"
+seconds_per_row = 0.1
+[flight.merged]
+merge = ["photos"]
+[[part]]
+name = "views"
+title = "views of one picture"
+licence = "ours"
+dataset = "{flights}/merged"
+pairs = 3
+[[part]]
+name = "elsewhere"
+title = "what needs something"
+licence = "ours"
+dataset = "{data}/photos"
+pairs = 3
+needs = ["no_such_module"]
+"""
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a measured study of two rounds."""
+
+    def make(folder: Path) -> None:
+        (folder / "tiny.toml").write_text(TINY)
+        shutil.copytree(shared_views(tmp_path_factory), folder / "data" / "photos")
+        assert main([*arguments(folder), "--budget", "0.001s"]) == 3
+        assert main(arguments(folder)) == 0
+
+    return made_once(tmp_path_factory, "tiny-study", make)[0]
+
+
+def arguments(folder: Path) -> list[str]:
+    """Of the program, for everything in one folder."""
+    places = {"configuration": "tiny.toml", "data": "data", "work": "work", "database": "database"}
+    words = [word for name, place in places.items() for word in (f"--{name}", str(folder / place))]
+    return [*words, "--workers", "1"]
+
+
+def test_the_database_holds_each_row_once(measured: Path) -> None:
+    study = aerocues.Study(measured / "database")
+    assert study.names == ("views",)
+    rows = study.table()
+    assert len(rows) == 9
+    assert rows.select("detector", "matcher", "pair").is_unique().all()
+    assert rows["part"].unique().to_list() == ["views"]
+    parts = study.parts().row(0, named=True)
+    assert parts["title"] == "views of one picture"
+    assert parts["cpu_hours"] >= 0
+
+
+def test_nothing_of_this_machine_is_in_it(measured: Path) -> None:
+    record = (measured / "database" / "views" / "run.json").read_text()
+    assert str(measured) not in record
+    assert "source" not in json.loads(record)["dataset"]
+    texts = aerocues.Study(measured / "database").table().select(pl.col(pl.String))
+    found = [column.name for column in texts if column.str.contains(str(measured.parent)).any()]
+    assert found == []
+
+
+def test_a_finished_study_has_nothing_to_do(
+    measured: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*arguments(measured), "--dry-run", "--only", "elsewhere"]) == 0
+    assert "needs no_such_module" in capsys.readouterr().out
+    assert main([*arguments(measured), "--only", "nothing"]) == 2
+
+
+def test_a_row_that_differs_is_found(measured: Path) -> None:
+    rows = aerocues.Study(measured / "database").table()
+    assert differing(rows, rows).is_empty()
+    other = rows.with_columns(
+        pl.when(pl.int_range(pl.len()) == 4).then(-1).otherwise("inliers").alias("inliers")
+    )
+    assert len(differing(rows, other)) == 1
+
+
+def test_measured_again_it_is_identical(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*arguments(measured), "--verify"]) == 0
+    assert "1 row measured again, 1 identical" in capsys.readouterr().out
+
+
+def test_the_configuration_of_the_study_is_sound() -> None:
+    plan = read_plan()
+    names = list(dict.fromkeys(step.part.name for step in plan.steps))
+    assert CONFIGURATION.is_file()
+    assert len(names) > 15
+    assert plan.steps[0].round is not None
+    hours = sum(step.seconds({}) for step in plan.steps if not step.missing()) / 3600
+    assert hours < 9
+
+
+def test_what_is_wrong_with_a_configuration_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text(TINY.replace("pairs = 3", "pears = 3"))
+    with pytest.raises(ArgumentError, match="pears"):
+        read_plan(file)
