@@ -6,9 +6,9 @@ It goes on where it stopped, row by row; after each step the part is stored in t
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import resource
+import shutil
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -21,13 +21,15 @@ from aerocues.arguments import seconds_of
 from aerocues.errors import AerocuesError, StoreError
 from aerocues.phrases import count, spoken_seconds
 from aerocues.progress import Event
-from aerocues.results.study import add_part
+from aerocues.results.store import RUN
+from aerocues.results.study import FACTS, add_part
 from study.flights import make_flight
 from study.plan import CONFIGURATION, FOLDER, Plan, Step, read_plan
 
 DATABASE, WORK = FOLDER / "database", FOLDER / "work"
 DATA = Path(os.environ.get("AEROCUES_SHARED_DATA", FOLDER.parent.parent / "shared" / "data"))
 TOLD_EVERY = 60.0
+UNFINISHED = 3
 
 
 class BudgetSpentError(Exception):
@@ -66,16 +68,26 @@ class Study:
     _began: float = field(default_factory=time.monotonic)
     _told: float = 0.0
 
-    def hours(self) -> dict[str, dict[str, float]]:
-        """CPU seconds and rows of each step so far."""
-        file = self.work / "hours.json"
-        return dict(json.loads(file.read_text())) if file.is_file() else {}
+    def steps(self, part: str) -> dict[str, dict[str, Any]]:
+        """What the database says of the steps of a part: CPU seconds, rows, what was asked."""
+        folder = self.database / part
+        if not (folder / RUN).is_file():
+            return {}
+        return dict(aerocues.Results(folder).settings.get(FACTS, {}).get("steps", {}))
+
+    def measured(self) -> dict[str, dict[str, Any]]:
+        """CPU seconds and rows of each step so far, by the name of the step."""
+        parts = dict.fromkeys(step.part.name for step in self.plan.steps)
+        known = {part: self.steps(part) for part in parts}
+        return {f"{part} {name}": row for part in parts for name, row in known[part].items()}
 
     def measure(self, parts: Sequence[str] = ()) -> bool:
         """Measure the parts, all by default; whether they are finished."""
         for step in self.plan.of(parts):
             if missing := step.missing():
                 self.tell(f"{step.name}: skipped, as {', '.join(missing)} is not installed")
+                continue
+            if self.steps(step.part.name).get(step.short_name, {}).get("finished") == step.asked():
                 continue
             try:
                 self.make(step)
@@ -85,34 +97,47 @@ class Study:
         return True
 
     def make(self, step: Step) -> None:
-        """Make one step, or what is left of it, and store the part."""
-        before, used = self._amount(step), _cpu_seconds()
+        """Make one step, or what is left of it, and store the part, finished or not."""
+        self._restore(step)
+        before, used, finished = self._amount(step), _cpu_seconds(), False
         try:
             self._measure_rows(step) if step.round else self._make_models(step)
+            finished = True
         finally:
-            self._note(step, _cpu_seconds() - used, self._amount(step) - before)
-        self.store(step)
+            if (self.work / step.part.name / RUN).is_file():
+                made = self._amount(step) - before
+                self.store(step, _cpu_seconds() - used, made, finished=finished)
 
-    def store(self, step: Step) -> None:
+    def store(self, step: Step, seconds: float, rows: int, *, finished: bool) -> None:
         """Store the part of a step in the database; StoreError if that becomes too large."""
-        part = step.part
-        spent = sum(
-            row["seconds"] for name, row in self.hours().items() if name.split()[0] == part.name
-        )
+        part, steps = step.part, self.steps(step.part.name)
+        old = steps.get(step.short_name, {"seconds": 0.0, "rows": 0})
+        steps[step.short_name] = {
+            "seconds": round(old["seconds"] + seconds, 1),
+            "rows": old["rows"] + rows,
+            "finished": step.asked() if finished else None,
+        }
+        hours = round(sum(each["seconds"] for each in steps.values()) / 3600, 4)
         facts = {
             "title": part.title,
             "licence": part.licence,
-            "cpu_hours": round(spent / 3600, 3),
-            "steps_done": [n.split()[1] for n in self.hours() if n.split()[0] == part.name],
+            "cpu_hours": hours,
+            "steps": steps,
         }
-        folder = add_part(self.database, part.name, self.work / part.name, facts)
+        add_part(self.database, part.name, self.work / part.name, facts)
         size = sum(file.stat().st_size for file in self.database.rglob("*.parquet")) / 1e6
-        self.tell(f"{step.name}: stored in {folder.name}; the database has {size:.1f} MB")
+        self.tell(f"{step.name}: {count(rows, 'row')} stored; the database has {size:.1f} MB")
         if size > self.plan.max_megabytes:
             raise StoreError(
                 f"the database has {size:.1f} MB, more than {self.plan.max_megabytes:g}; "
                 "leave a part out"
             )
+
+    def _restore(self, step: Step) -> None:
+        """Go on from the database where the results folder is gone, as in a new checkout."""
+        kept, folder = self.database / step.part.name, self.work / step.part.name
+        if (kept / RUN).is_file() and not (folder / RUN).is_file():
+            shutil.copytree(kept, folder, dirs_exist_ok=True)
 
     def dataset(self, step: Step) -> aerocues.Dataset:
         """The images of a step, with the pairs to measure."""
@@ -165,17 +190,10 @@ class Study:
     def _amount(self, step: Step) -> int:
         """Rows, or models, that are there."""
         folder = self.work / step.part.name
-        if not (folder / "run.json").is_file():
+        if not (folder / RUN).is_file():
             return 0
         results = aerocues.Results(folder)
         return len(results.table() if step.round else results.reconstructions())
-
-    def _note(self, step: Step, seconds: float, rows: int) -> None:
-        known = self.hours()
-        old = known.get(step.name, {"seconds": 0.0, "rows": 0})
-        known[step.name] = {"seconds": old["seconds"] + seconds, "rows": old["rows"] + rows}
-        self.work.mkdir(parents=True, exist_ok=True)
-        (self.work / "hours.json").write_text(json.dumps(known, indent=2) + "\n")
 
 
 def _cpu_seconds() -> float:
@@ -199,7 +217,7 @@ def print_hours(steps: Sequence[Step], measured: Mapping[str, Mapping[str, float
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """The program; 0 if the study is finished, 3 if the budget was spent, 2 for wrong input."""
+    """The program; 0 if the study is finished, `UNFINISHED` if not, 2 for wrong input."""
     parser = argparse.ArgumentParser(description="Measure the study, or go on with it.")
     parser.add_argument("--configuration", type=Path, default=CONFIGURATION)
     parser.add_argument("--only", action="append", default=[], metavar="PART")
@@ -225,13 +243,16 @@ def main(words: Sequence[str] | None = None) -> int:
             workers=asked.workers,
         )
         if asked.dry_run:
-            print_hours(study.plan.of(asked.only), study.hours())
+            print_hours(study.plan.of(asked.only), study.measured())
             return 0
         if asked.verify:
             from study.verify import verify
 
             return verify(study, asked.only)
-        return 0 if study.measure(asked.only) else 3
+        return 0 if study.measure(asked.only) else UNFINISHED
+    except BudgetSpentError:
+        print("the budget is spent before everything was measured again", file=sys.stderr)
+        return UNFINISHED
     except AerocuesError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

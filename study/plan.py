@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from typing import Any
 from aerocues.errors import ArgumentError
 from aerocues.methods.plugins import installed_methods
 from aerocues.methods.selection import select
+from aerocues.results.hashing import content_hash
 
 FOLDER = Path(__file__).resolve().parent
 CONFIGURATION = FOLDER / "study.toml"
@@ -89,9 +90,20 @@ class Step:
     round: Round | None
 
     @property
+    def short_name(self) -> str:
+        """The name within its part, such as ``exact``."""
+        return self.round.name if self.round else MODELS
+
+    @property
     def name(self) -> str:
         """Such as ``oxford-tuned exact``."""
-        return f"{self.part.name} {self.round.name if self.round else MODELS}"
+        return f"{self.part.name} {self.short_name}"
+
+    def asked(self) -> str:
+        """A hash of everything that decides what is measured."""
+        terms = asdict(self.part) | {"round": asdict(self.round) if self.round else None}
+        told = ("title", "licence", "pairs", "rounds", "factor")
+        return content_hash({name: value for name, value in terms.items() if name not in told})
 
     @property
     def combinations(self) -> str:

@@ -6,7 +6,6 @@ import threading
 import zipfile
 from pathlib import Path
 
-import polars as pl
 import pytest
 
 import aerocues
@@ -145,6 +144,7 @@ def test_places_of_a_machine_are_left_out() -> None:
     assert without_places(settings) == {"preset": "tuned", "dataset": kept}
 
 
-def test_a_part_with_no_more_than_one_row_a_measurement(database: Path) -> None:
-    file = database / "first-part" / "parts" / "all.parquet"
-    assert pl.read_parquet(file).select("row_key").is_unique().all()
+def test_a_part_can_be_a_part_again(database: Path, tmp_path: Path) -> None:
+    kept = add_part(tmp_path, "copy", database / "first-part", {})
+    again = add_part(tmp_path, "copy", kept, {})
+    assert aerocues.Results(again).table().equals(aerocues.Results(database / "first-part").table())

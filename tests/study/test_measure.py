@@ -89,9 +89,20 @@ def test_nothing_of_this_machine_is_in_it(measured: Path) -> None:
     assert found == []
 
 
-def test_a_finished_study_has_nothing_to_do(
-    measured: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_finished_study_goes_on_from_its_database_alone(measured: Path, tmp_path: Path) -> None:
+    shutil.copytree(measured / "database", tmp_path / "database")
+    shutil.copytree(measured / "data", tmp_path / "data")
+    (tmp_path / "tiny.toml").write_text(TINY)
+    assert main(arguments(tmp_path)) == 0
+    assert not (tmp_path / "work").exists()
+    more = TINY.replace('"ORB-ORB-HAM-FLANN"', '"ORB-ORB-HAM-*"')
+    (tmp_path / "tiny.toml").write_text(more)
+    assert main(arguments(tmp_path)) == 0
+    steps = aerocues.Results(tmp_path / "database" / "views").settings["study"]["steps"]
+    assert {name: step["rows"] for name, step in steps.items()} == {"first": 6, "second": 3}
+
+
+def test_what_is_asked_for_must_exist(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*arguments(measured), "--dry-run", "--only", "elsewhere"]) == 0
     assert "needs no_such_module" in capsys.readouterr().out
     assert main([*arguments(measured), "--only", "nothing"]) == 2

@@ -10,10 +10,10 @@ from aerocues.errors import StoreError
 from aerocues.notebooks import as_html
 from aerocues.phrases import count
 from aerocues.results.combination_columns import METHODS
-from aerocues.results.measured_results import Results, as_results
+from aerocues.results.measured_results import Results
 from aerocues.results.packing import folder_content, zipped
-from aerocues.results.plan_table import plan_of
 from aerocues.results.schema import Column, polars_schema
+from aerocues.results.store import Store
 from aerocues.results.study_place import NAME, part_folder, part_names, study_folder
 from aerocues.results.whole_files import write_whole
 
@@ -141,12 +141,11 @@ class Study:
         )
 
 
-def add_part(
-    study: str | Path, name: str, results: Results | str | Path, facts: Mapping[str, Any]
-) -> Path:
-    """Store results as a part of a study, without what ties them to this machine.
+def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[str, Any]) -> Path:
+    """Store a results folder as a part of a study, without what ties it to this machine.
 
-    Each measurement is one row; clouds, references and the places of the images are left out.
+    It stays a results folder, which `aerocues.run` can continue; clouds, references and the places
+    of the images are left out.
 
     Parameters
     ----------
@@ -154,7 +153,8 @@ def add_part(
         Folder of the study, made where it is missing.
     name : str
         Of the part: small letters, digits, ``-`` and ``_``.
-    results : Results or path
+    results : path
+        The results folder.
     facts : mapping
         What is told of the part: ``title``, ``licence``, ``cpu_hours`` and others in JSON types.
 
@@ -170,10 +170,11 @@ def add_part(
     """
     if not NAME.fullmatch(name):
         raise StoreError(f"{name!r} cannot name a part; use small letters, digits, - and _")
-    found, folder = as_results(results), Path(study) / name
-    rows, models = found.table(), found.reconstructions()
-    told = {**without_places(found.settings), FACTS: dict(facts)}
-    content = folder_content(told, plan_of(rows), rows, models if len(models) else None)
+    store, folder = Store.open(Path(results)), Path(study) / name
+    told = {**without_places(store.run()), FACTS: dict(facts)}
+    planned, models = store.planned(), store.reconstructions()
+    rows = store.rows().join(planned.select("row_key"), on="row_key", how="semi")
+    content = folder_content(told, planned, rows, models if len(models) else None)
     try:
         for file in content:
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
