@@ -82,13 +82,15 @@ class Findings:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The parts that are there."""
-        return self.study.names if self.study else ()
+        """The parts of which a round is finished: fewer rows would favour what came first."""
+        if self.study is None:
+            return ()
+        return tuple(self.study.parts().filter(pl.col("finished") != "")["part"])
 
     def results(self, names: Sequence[str]) -> list[aerocues.Results]:
         """The results of those of the parts that are there."""
         study = self.study
-        return [study.part(name) for name in names if name in study.names] if study else []
+        return [study.part(name) for name in names if name in self.names] if study else []
 
     def table(self, query: str) -> pl.DataFrame:
         """The answer to a query; empty where the parts that it needs are missing."""
@@ -203,20 +205,36 @@ class Findings:
 
     def criteria(self) -> str:
         """What the choice of criteria and counting failures change in the rankings."""
-        lines: list[tuple[str, ...]] = [
-            ("part", "default", "inliers", "thesis", "default ~ inliers", "default ~ thesis")
-        ]
+        ways = {"inliers": "inliers", "thesis": "thesis", "failures left out": None}
+        heads = ("part", "best: default", *(f"best: {way}" for way in ways))
+        lines: list[tuple[str, ...]] = [(*heads, *(f"agreement: {way}" for way in ways))]
         for name in (name for name in self.names if name.endswith("-tuned")):
             [found] = self.results([name])
-            frames = {
-                preset: aerocues.score(found, preset, resamples=2).frame("combination")
-                for preset in ("default", "inliers", "thesis")
-            }
-            bests = [f"`{frame['combination'][0]}`" for frame in frames.values()]
-            default = frames["default"]
-            agreement = [rank_correlation(default, frames[p]) for p in ("inliers", "thesis")]
+            usual = aerocues.score(found, "default", resamples=2).frame("combination")
+            others = [
+                aerocues.score(found, preset, resamples=2)
+                if preset
+                else aerocues.score(found, "default", failures="omit", resamples=2)
+                for preset in ways.values()
+            ]
+            frames = [each.frame("combination") for each in others]
+            bests = [f"`{frame['combination'][0]}`" for frame in (usual, *frames)]
+            agreement = [rank_correlation(usual, frame) for frame in frames]
             lines.append((f"`{name}`", *bests, *agreement))
         return markdown(lines) if lines[1:] else NOT_YET
+
+    def failures(self) -> str:
+        """How the rows ended."""
+        if self.study is None:
+            return NOT_YET
+        rows = self.study.table()
+        counts = rows.group_by("status").len().sort("len", "status", descending=[True, False])
+        lines = [("status", "rows", "share", "most often with the detector")]
+        for status, number in counts.iter_rows():
+            if status != "ok":
+                most = rows.filter(pl.col("status") == status)["detector"].mode().sort()[0]
+                lines.append((f"`{status}`", f"{number:,}", f"{number / len(rows):.1%}", most))
+        return markdown(lines) if lines[1:] else "No row failed."
 
     def predictors(self) -> str:
         """Which figures of pairs predict how many images a model holds."""
@@ -286,12 +304,13 @@ class Findings:
             return NOT_YET
         texts = ("part", "what it is", "licence of the images", "preset")
         lines: list[tuple[str, ...]] = [
-            (*texts, "combinations", "pairs", "rows", "models", "CPU h")
+            (*texts, "combinations", "pairs", "rows", "models", "finished steps", "CPU h")
         ]
         for row in self.study.parts().iter_rows(named=True):
             named = [row[name] or "" for name in ("title", "licence", "preset")]
             counts = [f"{row[name]:,}" for name in ("combinations", "pairs", "rows", "models")]
-            lines.append((f"`{row['part']}`", *named, *counts, f"{row['cpu_hours']:.2f}"))
+            hours = f"{row['cpu_hours']:.2f}"
+            lines.append((f"`{row['part']}`", *named, *counts, row["finished"], hours))
         return markdown(lines)
 
     def versions(self) -> str:
@@ -351,7 +370,17 @@ def markdown(lines: Sequence[Sequence[str]]) -> str:
 
 PAGES: dict[str, tuple[str, ...]] = {
     "docs/study.md": (
-        *("measured", "advice", "main-finding", "binary", "flann", "oblique", "turned", "criteria"),
+        *(
+            "measured",
+            "advice",
+            "main-finding",
+            "binary",
+            "flann",
+            "oblique",
+            "turned",
+            "criteria",
+            "failures",
+        ),
         *("predictors", "presets", "learned", "extra", "pixels"),
     ),
     "study/README.md": ("parts", "versions", "dictionary"),

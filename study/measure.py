@@ -18,7 +18,7 @@ from typing import Any
 
 import aerocues
 from aerocues.arguments import seconds_of
-from aerocues.errors import AerocuesError, StoreError
+from aerocues.errors import AerocuesError, DatasetError, StoreError
 from aerocues.phrases import count, spoken_seconds
 from aerocues.progress import Event
 from aerocues.results.store import RUN
@@ -82,7 +82,10 @@ class Study:
         return {f"{part} {name}": row for part in parts for name, row in known[part].items()}
 
     def measure(self, parts: Sequence[str] = ()) -> bool:
-        """Measure the parts, all by default; whether they are finished."""
+        """Measure the parts, all by default; whether they are finished.
+
+        Those whose images or modules are missing are skipped, which is told.
+        """
         for step in self.plan.of(parts):
             if missing := step.missing():
                 self.tell(f"{step.name}: skipped, as {', '.join(missing)} is not installed")
@@ -91,6 +94,8 @@ class Study:
                 continue
             try:
                 self.make(step)
+            except DatasetError as error:
+                self.tell(f"{step.name}: skipped: {error}")
             except BudgetSpentError:
                 self.tell(f"{step.name}: the budget is spent; the same command goes on from here")
                 return False

@@ -31,6 +31,7 @@ NAMES = (
     *("brighton-flann-8000", "mini-1000", "mini-4000", "uav-learned"),
 )
 
+FINISHED = {"leaders": {"finished": "all"}}
 NEED_MORE = ("binary", "extra", "oblique", "predictors", "turned")
 """Statements for which the few rows of the tests do not suffice."""
 
@@ -47,7 +48,7 @@ def stand_in(finished: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     def make(folder: Path) -> None:
         for name in NAMES:
-            facts = {"title": name, "licence": "ours", "cpu_hours": 0.01}
+            facts = {"title": name, "licence": "ours", "cpu_hours": 0.01, "steps": FINISHED}
             add_part(folder / "database", name, finished, facts)
 
     return made_once(tmp_path_factory, "stand-in-study", make)[0] / "database"
@@ -94,7 +95,8 @@ def test_who_suffers_most_is_told(tmp_path: Path) -> None:
             for detector, number in zip(("ORB", "STAR"), numbers, strict=True)
         ]
         table = pl.DataFrame(rows, schema=polars_schema())
-        content = folder_content({"settings_key": "one"}, plan_of(table), table, None)
+        facts = {"settings_key": "one", "study": {"steps": FINISHED}}
+        content = folder_content(facts, plan_of(table), table, None)
         for name, data in content.items():
             (tmp_path / part / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / part / name).write_bytes(data)

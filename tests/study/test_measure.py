@@ -45,6 +45,12 @@ licence = "ours"
 dataset = "{data}/photos"
 pairs = 3
 needs = ["no_such_module"]
+[[part]]
+name = "nowhere"
+title = "images that are not there"
+licence = "ours"
+dataset = "{data}/nowhere"
+pairs = 3
 """
 
 

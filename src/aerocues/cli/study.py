@@ -41,7 +41,7 @@ def study(
         Path | None, typer.Option(metavar="FILE", help="Pack all parts into one zip file.")
     ] = None,
 ) -> None:
-    """Show what is in a study, or answer a query over all its parts.
+    """Show what is in a study, or answer a query over its parts.
 
     Where another command takes results, study:PART is that part of the study.
     """

@@ -36,6 +36,7 @@ PARTS: tuple[Column, ...] = (
     Column("rows", "integer", "count", "rows in the table results"),
     Column("ok", "integer", "count", "rows with the status ok"),
     Column("models", "integer", "count", "rows in the table reconstructions"),
+    Column("finished", "string", "", "finished steps: rounds of combinations, models"),
     Column("cpu_hours", "float", "h", "CPU time that measuring took"),
     Column("licence", "string", "", "terms of the images"),
     Column("aerocues", "string", "", "version of aerocues"),
@@ -156,7 +157,8 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
     results : path
         The results folder.
     facts : mapping
-        What is told of the part: ``title``, ``licence``, ``cpu_hours`` and others in JSON types.
+        What is told of the part, in JSON types: ``title``, ``licence``, ``cpu_hours``, and
+        ``steps``: objects by name, with ``finished`` where a step is.
 
     Returns
     -------
@@ -216,6 +218,9 @@ def part_facts(name: str, results: Results) -> dict[str, Any]:
         "rows": len(rows),
         "ok": int((rows["status"] == "ok").sum()),
         "models": len(results.reconstructions()),
+        "finished": ", ".join(
+            name for name, step in facts.get("steps", {}).items() if step.get("finished")
+        ),
         "cpu_hours": facts.get("cpu_hours"),
         "licence": facts.get("licence"),
         "aerocues": versions.get("aerocues"),
