@@ -30,8 +30,6 @@ class Round:
         Patterns, as `aerocues.run` takes them.
     seconds_per_row : float
         CPU seconds, as long as nothing tells better.
-    pairs : int
-        Measured pairs, where they are fewer than those of the part; 0: all.
     run : mapping of str to object
         Arguments of `aerocues.run` that differ from those of the part.
     """
@@ -39,7 +37,6 @@ class Round:
     name: str
     combinations: str
     seconds_per_row: float
-    pairs: int = 0
     run: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -113,7 +110,7 @@ class Step:
     def amount(self) -> int:
         """About as many rows, or models, are to be made."""
         number = _number(self.combinations)
-        return number * (self.round.pairs or self.part.pairs) if self.round else number
+        return number * self.part.pairs if self.round else number
 
     def missing(self) -> list[str]:
         """Modules that it needs and that are not installed."""
