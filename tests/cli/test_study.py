@@ -67,10 +67,8 @@ def test_its_columns_are_explained(call: Call) -> None:
     "words",
     [
         ["score", "study:beach-part", "--resamples", "10"],
-        ["score", "study:beach-part", "--objective", "speed", "--resamples", "10"],
         ["recommend", "--from", "study:beach-part", "--from", "study:quarry-part"],
         ["compare", "study:beach-part", "study:quarry-part"],
-        ["results", "study:beach-part"],
         ["report", "study:beach-part", "--format", "markdown", "--resamples", "10"],
     ],
     ids=lambda words: words[0],
