@@ -44,7 +44,7 @@ CONDITIONS: tuple[tuple[str, tuple[str, ...], str], ...] = (
 BINARY = """SELECT detector, descriptor, matcher, COUNT(*) AS pairs,
 AVG(COALESCE(coverage, 0)) AS coverage,
 MEDIAN((detect_seconds_1_cpu + detect_seconds_2_cpu + describe_seconds_1_cpu
-+ describe_seconds_2_cpu) / 2 + match_seconds_cpu + verify_seconds_cpu) AS seconds
++ describe_seconds_2_cpu) / 2) AS seconds, MEDIAN(match_seconds_cpu) AS to_match
 FROM results WHERE norm = 'HAM' AND preset = 'tuned'
 GROUP BY detector, descriptor, matcher HAVING seconds < 0.05
 ORDER BY pairs DESC, coverage DESC LIMIT 5"""
@@ -114,12 +114,12 @@ class Findings:
         timed = table.filter(pl.col("timing") == "exclusive")
         shared = int((timed["wall_over_cpu"] > DISTURBED).sum())
         return (
-            f"So far: {count(rows, 'row')} of {count(len(parts), 'part')}, of which "
+            f"So far: {count(rows, 'row')} in {count(len(parts), 'part')}, of which "
             f"{failed:,} failed or are not better than chance, and {count(models, 'model')}; up to "
             f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours. "
-            f"{count(len(timed), 'row')} were timed alone, of which {shared:,} had to share their "
-            "core with other programs all the same; times of other rows follow from these, or are "
-            "those of a busy machine."
+            f"Times: {count(len(timed), 'row')} timed alone, {shared:,} of which had to share "
+            "the core with other programs all the same; others are scaled by these, or are CPU "
+            "times of a busy machine."
         )
 
     def main_finding(self) -> str:
@@ -138,28 +138,39 @@ class Findings:
                 )
         return NOT_YET
 
+    @cached_property
+    def choices(self) -> dict[str, aerocues.Choice]:
+        """The choice of each condition of which a part was measured."""
+        found = {title: (self.results(names), aim) for title, names, aim in CONDITIONS}
+        return {title: aerocues.choose(own, aim) for title, (own, aim) in found.items() if own}
+
     def advice(self) -> str:
         """What to take under each condition."""
         lines = [("you fly", "take", "sure", "may be as good", "measured")]
-        for title, names, objective in CONDITIONS:
-            if found := self.results(names):
-                choice = aerocues.choose(found, objective)
+        for title, _, _ in CONDITIONS:
+            if choice := self.choices.get(title):
                 first = choice.ranked["probability"][0]
                 others = choice.ranked[1:].filter(pl.col("probability") >= LIKELY)
                 named = others.sort("probability", descending=True)["combination"].to_list()
                 more = f" and {len(named) - MOST_NAMED} more" if named[MOST_NAMED:] else ""
-                lines.append(
-                    (
-                        title,
-                        f"`{choice.best}`",
-                        "" if first is None else likelihood(first),
-                        ", ".join(f"`{each}`" for each in named[:MOST_NAMED]) + more,
-                        f"{len(choice.ranked)} combinations, {choice.pairs} pairs",
-                    )
-                )
+                sure = "" if first is None else likelihood(first)
+                good = ", ".join(f"`{each}`" for each in named[:MOST_NAMED]) + more
+                on = f"{len(choice.ranked)} combinations, {choice.pairs} pairs"
+                lines.append((title, f"`{choice.best}`", sure, good, on))
             else:
                 lines.append((title, NOT_YET, "", "", ""))
         return markdown(lines)
+
+    def changes(self) -> str:
+        """How many conditions have a best of their own."""
+        if len(self.choices) < 2:
+            return NOT_YET
+        bests = dict.fromkeys(choice.best for choice in self.choices.values())
+        named = ", ".join(f"`{best}`" for best in bests)
+        return (
+            f"The {len(self.choices)} measured conditions have "
+            f"{count(len(bests), 'different best', 'different bests')}: {named}."
+        )
 
     def suffers(self, query: str, before: str, after: str) -> str:
         """Which detector loses most of its right matches, and all others."""
@@ -194,11 +205,13 @@ class Findings:
         found = self.table("binary")
         if found.is_empty():
             return f"{console('binary')}\n\n{NOT_YET}"
-        lines = [("combination", "pairs", "coverage", "ms")]
+        lines: list[tuple[str, ...]] = [
+            ("combination", "pairs", "coverage", "ms an image", "ms to match a pair")
+        ]
         for row in found.iter_rows(named=True):
             name = f"`{row['detector']}-{row['descriptor']}-HAM-{row['matcher']}`"
-            figures = (f"{row['pairs']}", f"{row['coverage']:.3f}", f"{row['seconds'] * 1e3:.0f}")
-            lines.append((name, *figures))
+            times = (f"{row[each] * 1e3:.0f}" for each in ("seconds", "to_match"))
+            lines.append((name, str(row["pairs"]), f"{row['coverage']:.3f}", *times))
         return f"{console('binary')}\n\n{markdown(lines)}"
 
     def flann(self) -> str:
