@@ -177,11 +177,11 @@ bench: setup ## the benchmarks of the framework itself
 # It goes on where it stopped, and ends with 3 where the budget is spent; more words, such as --budget 30min, --dry-run, --only PART or --verify: STUDY="--budget 30min"
 study: setup ## measure the study, or go on with it: about 8 CPU hours; stored piece by piece in study/database
 	$(BIN)/python -m study.measure $(STUDY) || [ $$? -eq 3 ]
-	$(BIN)/python docs/study.py
+	$(BIN)/python -m docs.study
 
 tables: setup ## bring the tables of the guide up to date with the source and the study
 	$(BIN)/python -m docs.tables
-	$(BIN)/python docs/study.py
+	$(BIN)/python -m docs.study
 
 lock: setup ## pin the newest allowed versions in the files *.lock (needs uv)
 	$(LOCK) pyproject.toml --all-extras --group dev --upgrade --output-file requirements.lock

@@ -1,27 +1,26 @@
 """Write what the study found: docs/study.md, the card of its data, and a sentence of the README.
 
-``python docs/study.py`` rewrites what stands between ``<!-- NAME -->`` marks; the tests fail where
+``python -m docs.study`` rewrites what stands between ``<!-- NAME -->`` marks; the tests fail where
 it is out of date. A statement is made only where the database holds its rows.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import polars as pl
-from scipy.stats import spearmanr
 
 import aerocues
 from aerocues.errors import AerocuesError
 from aerocues.phrases import count, likelihood
-from aerocues.results.schema import Column
 from aerocues.results.study_dictionary import dictionary
 from aerocues.results.timing import DISTURBED
+from docs.study_queries import QUERIES, console, described, in_common, markdown, rank_correlation
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 DATABASE = REPOSITORY / "study" / "database"
@@ -40,33 +39,6 @@ CONDITIONS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("boards: all of these flights", ("brighton-flown-tuned", "suburb-nadir-tuned"), "speed"),
 )
 """What a practitioner flies, the parts of the study that show it, and the objective."""
-
-BINARY = """SELECT detector, descriptor, matcher, COUNT(*) AS pairs,
-AVG(COALESCE(coverage, 0)) AS coverage,
-MEDIAN((detect_seconds_1_cpu + detect_seconds_2_cpu + describe_seconds_1_cpu
-+ describe_seconds_2_cpu) / 2) AS seconds, MEDIAN(match_seconds_cpu) AS to_match
-FROM results WHERE norm = 'HAM' AND preset = 'tuned'
-GROUP BY detector, descriptor, matcher HAVING seconds < 0.05
-ORDER BY pairs DESC, coverage DESC LIMIT 5"""
-FLANN = """SELECT norm, matcher, COUNT(*) AS pairs, AVG(match_seconds_cpu) AS seconds,
-AVG(COALESCE("ref_matches@3", 0)) AS right_matches FROM results
-WHERE part = 'brighton-flann-8000' GROUP BY norm, matcher ORDER BY norm, matcher"""
-OBLIQUE = """SELECT detector,
-AVG(CASE WHEN part = 'suburb-nadir-tuned' THEN COALESCE("ref_matches@3", 0) END) AS nadir,
-AVG(CASE WHEN part = 'suburb-oblique-tuned' THEN COALESCE("ref_matches@3", 0) END) AS oblique
-FROM results WHERE descriptor = 'BRISK' AND matcher = 'BF' GROUP BY detector ORDER BY detector"""
-TURNED = """SELECT detector,
-AVG(CASE WHEN reference_turn <= 60 THEN COALESCE("ref_matches@3", 0) END) AS same_heading,
-AVG(CASE WHEN reference_turn > 60 THEN COALESCE("ref_matches@3", 0) END) AS turned
-FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK' AND matcher = 'BF'
-GROUP BY detector ORDER BY detector"""
-QUERIES: dict[str, tuple[str, tuple[str, ...]]] = {
-    "binary": (BINARY, ()),
-    "flann": (FLANN, ("brighton-flann-8000",)),
-    "oblique": (OBLIQUE, ("suburb-nadir-tuned", "suburb-oblique-tuned")),
-    "turned": (TURNED, ("brighton-flown-tuned",)),
-}
-"""Questions to the database alone, and the parts that answer them."""
 
 
 @dataclass(frozen=True)
@@ -352,43 +324,6 @@ class Findings:
         head = ("column", "type", "unit", "definition")
         tables = {name: markdown([head, *described(own)]) for name, own in dictionary().items()}
         return "\n\n".join(f"### {name}\n\n{table}" for name, table in tables.items())
-
-
-def console(query: str) -> str:
-    """A query as a command."""
-    text = QUERIES[query][0].replace('"', r"\"").replace("\n", " \\\n")
-    return f'```console\n$ aerocues study --sql "{text}"\n```'
-
-
-def described(columns: Sequence[Column]) -> Iterator[tuple[str, ...]]:
-    """A row a column."""
-    for each in columns:
-        yield f"`{each.name}`", each.type, each.unit, each.definition
-
-
-def rank_correlation(first: pl.DataFrame, second: pl.DataFrame) -> str:
-    """Spearman's correlation of the scores of what two rankings have in common."""
-    both = first.select("combination", "score").join(second, on="combination", suffix="_other")
-    if len(both) < 3:
-        return ""
-    return f"{spearmanr(both['score'], both['score_other']).statistic:.2f}"
-
-
-def in_common(thesis: pl.DataFrame, tuned: pl.DataFrame) -> tuple[str, ...]:
-    """Means of two runs over the combinations and pairs that both measured."""
-    keys = ["pair", "detector", "descriptor", "norm", "matcher"]
-    figures = ("ref_matches@3", "ref_precision@3")
-    names = [name for figure in figures for name in (figure, f"{figure}_right")]
-    both = thesis.select(*keys, *figures).join(tuned.select(*keys, *figures), on=keys)
-    means = both.select(pl.col(names).fill_null(0).mean()).row(0)
-    number = both.select(keys[1:]).n_unique()
-    return (str(number), *(f"{m:.0f}" for m in means[:2]), *(f"{m:.2f}" for m in means[2:]))
-
-
-def markdown(lines: Sequence[Sequence[str]]) -> str:
-    """Rows as a Markdown table; the first one is the head."""
-    head, *body = lines
-    return "\n".join(f"| {' | '.join(line)} |" for line in (head, ["---"] * len(head), *body))
 
 
 PAGES: dict[str, tuple[str, ...]] = {

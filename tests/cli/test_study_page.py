@@ -14,7 +14,8 @@ from aerocues.results.packing import folder_content
 from aerocues.results.plan_table import plan_of
 from aerocues.results.schema import empty_row, polars_schema
 from aerocues.results.study import add_part
-from docs.study import DATABASE, NOT_YET, PAGES, QUERIES, Findings, console, rendered
+from docs.study import DATABASE, NOT_YET, PAGES, Findings, rendered
+from docs.study_queries import QUERIES, console
 from tests.cli.conftest import Call
 from tests.made_once import made_once
 from tests.test_documentation import REPOSITORY, blocks
