@@ -91,7 +91,8 @@ class Findings:
             f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours. "
             f"Times: {count(len(timed), 'row')} timed alone, {shared:,} of which had to share "
             "the core with other programs all the same; others are scaled by these, or are CPU "
-            "times of a busy machine."
+            f"times of a busy machine. {count(int(parts['again'].sum()), 'row')} measured again: "
+            f"{parts['identical'].sum():,} with identical quality."
         )
 
     def main_finding(self) -> str:

@@ -68,12 +68,16 @@ class Study:
     _began: float = field(default_factory=time.monotonic)
     _told: float = 0.0
 
-    def steps(self, part: str) -> dict[str, dict[str, Any]]:
-        """What the database says of the steps of a part: CPU seconds, rows, what was asked."""
+    def facts(self, part: str) -> dict[str, Any]:
+        """What the database tells of a part besides its rows."""
         folder = self.database / part
         if not (folder / RUN).is_file():
             return {}
-        return dict(aerocues.Results(folder).settings.get(FACTS, {}).get("steps", {}))
+        return dict(aerocues.Results(folder).settings.get(FACTS, {}))
+
+    def steps(self, part: str) -> dict[str, dict[str, Any]]:
+        """What it tells of the steps of a part: CPU seconds, rows, what was asked."""
+        return dict(self.facts(part).get("steps", {}))
 
     def measured(self) -> dict[str, dict[str, Any]]:
         """CPU seconds and rows of each step so far, by the name of the step."""
@@ -124,6 +128,7 @@ class Study:
         }
         hours = round(sum(each["seconds"] for each in steps.values()) / 3600, 4)
         facts = {
+            **self.facts(part.name),
             "title": part.title,
             "licence": part.licence,
             "cpu_hours": hours,

@@ -12,6 +12,7 @@ from aerocues.phrases import count
 from aerocues.results.combination_columns import METHODS, combination_name
 from aerocues.results.metrics import METRICS
 from aerocues.results.schema import COUNTS, GROUND_TRUTH, OUTCOME, REFERENCE
+from aerocues.results.study import FACTS, add_part
 from study.plan import Step
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ QUALITY = (
 
 
 def verify(study: Study, parts: Sequence[str] = ()) -> int:
-    """Measure 5 % of the rows of each part again; 0 if all are identical, else 1."""
+    """Measure 5 % of the rows of each part again, and note it; 0 if all are identical, else 1."""
     database = aerocues.Study(study.database)
     first = {step.part.name: step for step in reversed(study.plan.of(parts))}
     total = different = 0
@@ -40,6 +41,9 @@ def verify(study: Study, parts: Sequence[str] = ()) -> int:
         again = _measured_again(study, first[name], sample)
         unequal = differing(sample, again)
         total, different = total + len(sample), different + len(unequal)
+        same = {"again": len(sample), "identical": len(sample) - len(unequal)}
+        facts = {**database.part(name).settings[FACTS], "verified": same}
+        add_part(study.database, name, study.database / name, facts)
         study.tell(f"{name}: {count(len(sample), 'row')} measured again, {len(unequal)} different")
         for line in unequal.head(SHOWN).iter_rows():
             study.tell(f"  {' '.join(map(str, line))}")

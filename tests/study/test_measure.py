@@ -126,6 +126,9 @@ def test_a_row_that_differs_is_found(measured: Path) -> None:
 def test_measured_again_it_is_identical(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*arguments(measured), "--verify"]) == 0
     assert "1 row measured again, 1 identical" in capsys.readouterr().out
+    parts = aerocues.Study(measured / "database").parts()
+    assert parts.select("again", "identical").row(0) == (1, 1)
+    assert parts["title"].to_list() == ["views of one picture"]
 
 
 def test_the_configuration_of_the_study_is_sound() -> None:

@@ -37,6 +37,8 @@ PARTS: tuple[Column, ...] = (
     Column("ok", "integer", "count", "rows with the status ok"),
     Column("models", "integer", "count", "rows in the table reconstructions"),
     Column("finished", "string", "", "finished steps: rounds of combinations, models"),
+    Column("again", "integer", "count", "rows that were measured again to check them"),
+    Column("identical", "integer", "count", "of these, rows with the same quality"),
     Column("cpu_hours", "float", "h", "CPU time that measuring took"),
     Column("licence", "string", "", "terms of the images"),
     Column("aerocues", "string", "", "version of aerocues"),
@@ -158,7 +160,8 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
         The results folder.
     facts : mapping
         What is told of the part, in JSON types: ``title``, ``licence``, ``cpu_hours``, and
-        ``steps``: objects by name, with ``finished`` where a step is.
+        ``steps``: objects by name, with ``finished`` where a step is; ``verified``: an object with
+        the numbers ``again`` and ``identical``.
 
     Returns
     -------
@@ -221,6 +224,7 @@ def part_facts(name: str, results: Results) -> dict[str, Any]:
         "finished": ", ".join(
             name for name, step in facts.get("steps", {}).items() if step.get("finished")
         ),
+        **{name: (facts.get("verified") or {}).get(name, 0) for name in ("again", "identical")},
         "cpu_hours": facts.get("cpu_hours"),
         "licence": facts.get("licence"),
         "aerocues": versions.get("aerocues"),
