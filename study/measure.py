@@ -124,7 +124,8 @@ class Study:
         steps[step.short_name] = {
             "seconds": round(old["seconds"] + seconds, 1),
             "rows": old["rows"] + rows,
-            "finished": step.asked() if finished else None,
+            # What was finished under another configuration is still whole.
+            "finished": step.asked() if finished else old.get("finished"),
         }
         hours = round(sum(each["seconds"] for each in steps.values()) / 3600, 4)
         facts = {
