@@ -333,6 +333,7 @@ PAGES: dict[str, tuple[str, ...]] = {
             "measured",
             "advice",
             "main-finding",
+            "changes",
             "binary",
             "flann",
             "oblique",

@@ -58,6 +58,12 @@ def test_numbers_follow_the_database(page: str, findings: Findings) -> None:
     assert text == rendered(page, findings), "out of date; run: make tables"
 
 
+@pytest.mark.parametrize("page", PAGES)
+def test_every_mark_is_written_by_the_script(page: str) -> None:
+    marks = re.findall(r"<!-- (?!end of)([a-z-]+) -->", (REPOSITORY / page).read_text("utf-8"))
+    assert sorted(marks) == sorted(PAGES[page])
+
+
 @pytest.mark.parametrize("name", sorted({name for names in PAGES.values() for name in names}))
 def test_each_statement_is_made_of_rows_that_are_there(
     name: str, said: Findings, tmp_path: Path
