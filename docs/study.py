@@ -85,13 +85,17 @@ class Findings:
         table = self.study.table()
         timed = table.filter(pl.col("timing") == "exclusive")
         shared = int((timed["wall_over_cpu"] > DISTURBED).sum())
+        times = (
+            f"{count(len(timed), 'row')} timed alone, {shared:,} of which had to share the core with "
+            "other programs all the same; others are scaled by these."
+            if len(timed)
+            else "No row was timed alone yet: times are those of a busy machine."
+        )
         return (
             f"So far: {count(rows, 'row')} in {count(len(parts), 'part')}, of which "
             f"{failed:,} failed or are not better than chance, and {count(models, 'model')}; up to "
             f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours. "
-            f"Times: {count(len(timed), 'row')} timed alone, {shared:,} of which had to share "
-            "the core with other programs all the same; others are scaled by these, or are CPU "
-            f"times of a busy machine. {count(int(parts['again'].sum()), 'row')} measured again: "
+            f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
             f"{parts['identical'].sum():,} with identical quality."
         )
 
@@ -100,7 +104,9 @@ class Findings:
         for title, names, _ in (CONDITIONS[1], *CONDITIONS):
             if found := self.results(names[:1]):
                 frame = aerocues.score(found[0], "models").frame("combination")
-                best, pairs = frame.row(0, named=True), found[0].table()["pair"].n_unique()
+                pairs = found[0].table()["pair"].n_unique()
+                frame = frame.filter(pl.col("repeats") >= pairs / 2)
+                best = frame.row(0, named=True)
                 return (
                     f"**{title[0].upper()}{title[1:]}: {best['combination']}** is the best of "
                     f"{count(len(frame), 'combination')} on {count(pairs, 'pair')}: right matches "
