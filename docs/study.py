@@ -86,8 +86,8 @@ class Findings:
         timed = table.filter(pl.col("timing") == "exclusive")
         shared = int((timed["wall_over_cpu"] > DISTURBED).sum())
         times = (
-            f"{count(len(timed), 'row')} timed alone, {shared:,} of which had to share the core with "
-            "other programs all the same; others are scaled by these."
+            f"{count(len(timed), 'row')} timed alone, {shared:,} of which had to share the core "
+            "with other programs all the same; others are scaled by these."
             if len(timed)
             else "No row was timed alone yet: times are those of a busy machine."
         )
