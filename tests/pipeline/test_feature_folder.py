@@ -8,15 +8,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aerocues.datasets.dataset import Dataset
+from aerocues.datasets.dataset import Dataset, Image, Pixels
+from aerocues.datasets.decoded import DecodedSource
 from aerocues.errors import StoreError
 from aerocues.evaluation.run import run
+from aerocues.methods import plugins
 from aerocues.methods.arrays import Features, Keypoints
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods, register
 from aerocues.methods.presets import Preset
 from aerocues.pipeline import feature_folder
-from aerocues.pipeline.clock import StageTime
+from aerocues.pipeline.clock import Clock, StageTime
 from aerocues.pipeline.feature_folder import FeatureFolder, checked_folder
+from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import Described, FeatureExtractor
+from aerocues.pipeline.protocol import MeasurementProtocol
 from tests.evaluation.inline import InlineEngine
 from tests.evaluation.scenes import assert_same_rows, rows_of
 
@@ -166,3 +172,33 @@ def test_times_come_back_as_they_were(views: Dataset, tmp_path: Path) -> None:
         assert np.array_equal(described.features.descriptors, rows)
         assert described.features.descriptors.dtype == np.uint8
     assert folder.described(image, "ORB", "BRIEF") is None
+
+
+class Extractor:
+    """Keypoints and descriptors at once."""
+
+    dtype = "float32"
+
+    def extract(self, image: Any) -> Features:
+        xy = np.array([[5.0, 5.0], [9.0, 7.0]])
+        return Features(Keypoints.from_xy(xy), np.eye(2, dtype=np.float32))
+
+
+def test_an_extractor_that_was_interrupted_after_its_keypoints_begins_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(plugins, "_REGISTERED", {})
+    register("extractor", "OWN", Extractor)
+    image = Image("1", DecodedSource(Pixels(np.zeros((20, 20, 3), np.uint8))))
+    combination = Combination.parse("OWN-OWN-L2-BF")
+
+    def features() -> Features:
+        methods, protocol = installed_methods(), MeasurementProtocol()
+        folder = FeatureFolder(tmp_path, methods, protocol, "here")
+        source = FeatureSource(methods, protocol, Clock(0), folder=folder)
+        return source.features(image, combination).features
+
+    features()
+    [kept] = (tmp_path / "OWN-OWN").iterdir()
+    kept.unlink()
+    assert features().descriptors.tolist() == np.eye(2).tolist()

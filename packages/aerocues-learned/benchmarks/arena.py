@@ -87,6 +87,7 @@ def models(dataset: str, folder: Path, combinations: Sequence[str], *, upright: 
         baseline=not upright,
         workers=1,
         features=folder / "features",
+        retry_failed=True,
     )
 
 
@@ -170,7 +171,7 @@ def model_lines(folder: Path) -> Iterator[str]:
             f"{row['points_3d'] or 0:,}",
             f"{row['reprojection_error'] or 0:.2f}",
             f"{row['mean_track_length'] or 0:.1f}",
-            f"{sum(row[name] or 0 for name in row if name.endswith('seconds_cpu')):.0f}",
+            f"{row['reconstruction_seconds'] or 0:.0f}",
             f"{row['model_quality'] or 0:.0f}",
         )
         yield f"| `{row[COMBINATION]}` | {' | '.join(shown)} |"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from aerocues.datasets.dataset import Image
 from aerocues.errors import StoreError
 from aerocues.methods.arrays import Features, Keypoints
+from aerocues.methods.parameters import AEROCUES, OPENCV
 from aerocues.methods.registry import Methods
 from aerocues.pipeline.clock import StageTime
 from aerocues.pipeline.feature_arrays import (
@@ -79,7 +80,13 @@ class FeatureFolder:
         self._common += [protocol.seed, protocol.limit.count, protocol.limit.spread]
 
     def keypoints(self, image: Image, detector: str) -> tuple[Keypoints, StageTime] | None:
-        """What a detector found in an image; None where that is not here."""
+        """What a detector found in an image; None where that is not here.
+
+        An extractor finds keypoints and descriptors at once: the ones are of no use without the
+        others, which an interruption may have prevented.
+        """
+        if self._extracts(detector) and self.described(image, detector, detector) is None:
+            return None
         found = read_arrays(self._file(image, detector), (*KEYPOINTS, TIME))
         return None if found is None else (keypoints_of(found), _read_time(found[TIME]))
 
@@ -110,6 +117,15 @@ class FeatureFolder:
         arrays |= {"descriptors": features.descriptors, TIME: _written(described.time)}
         arrays[IMAGE_SIZE] = np.array(features.image_size)
         self._write(self._file(image, detector, descriptor), arrays)
+
+    def _extracts(self, detector: str) -> bool:
+        """Whether a detector is an extractor of a plug-in."""
+        described = self._methods.descriptors.get(detector)
+        return (
+            described is not None
+            and described.origin not in (OPENCV, AEROCUES)
+            and described.factory == self._methods.detectors[detector].factory
+        )
 
     def _file(self, image: Image, detector: str, descriptor: str = "") -> Path:
         methods = [dict(self._methods.detectors[detector].parameters)]
