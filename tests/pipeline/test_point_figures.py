@@ -44,6 +44,11 @@ def test_without_matches_no_precision_is_told() -> None:
     assert found["gt_repeatability"] == 1
 
 
+def test_without_keypoints_nothing_is_told() -> None:
+    none = points()
+    assert PointFigures("ref").of(np.zeros(0), (none, none), SAME) == {"ref_repeatability": None}
+
+
 def test_the_repeatability_of_the_same_keypoints_is_worked_out_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -48,7 +48,7 @@ class PointFigures:
         errors : (M,) float64
             Of the matches, pixels.
         keypoints : tuple of (N, 2) float32
-            Positions of all keypoints of both images, at least one of the first.
+            Positions of all keypoints of both images; a pair matcher may have found none.
         correspondence : Correspondence
             Between the two images; the same as long as no other pair begins.
         """
@@ -57,7 +57,8 @@ class PointFigures:
             right = int((errors <= threshold).sum())
             if len(errors):
                 figures[f"{self._prefix}_precision@{threshold}"] = right / len(errors)
-            figures[f"{self._prefix}_matching_score@{threshold}"] = right / len(keypoints[0])
+            if len(keypoints[0]):
+                figures[f"{self._prefix}_matching_score@{threshold}"] = right / len(keypoints[0])
         same = (keypoints[0].tobytes(), keypoints[1].tobytes())
         if same not in self._repeatabilities:
             self._repeatabilities[same] = repeatability(*keypoints, correspondence)
