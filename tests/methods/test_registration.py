@@ -72,6 +72,16 @@ class Weighty(None_):
     needs_file = {"path": "weights.bin", "variable": "OWN_WEIGHTS", "remedy": "download it"}
 
 
+class Weights(Pixels):
+    on_request = "heavy"
+    needs_file = Weighty.needs_file
+
+
+class OfOthers(None_):
+    on_request = "heavy"
+    takes_descriptors = ("OTHERS",)
+
+
 class Many(Corners):
     parameters = {"count": 900, "step": 2}
     limit = "count"
@@ -150,6 +160,21 @@ def test_a_method_is_unavailable_as_long_as_its_file_is_missing(
     assert len(select(installed_methods(), "SIFT-SIFT-L2-WEIGHTY")) == 1
     monkeypatch.setenv("OWN_WEIGHTS", str(tmp_path / "others.bin"))
     assert "others.bin" in explain("SIFT-SIFT-L2-WEIGHTY", installed_methods())
+    for unfit in ("~nosuchuser/weights.bin", "long" * 1000):
+        monkeypatch.setenv("OWN_WEIGHTS", unfit)
+        assert f"{unfit} cannot be opened" in explain("SIFT-SIFT-L2-WEIGHTY", installed_methods())
+
+
+def test_a_set_of_which_nothing_can_be_used_says_why(
+    module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    register("matcher", "OFOTHERS", f"{module}:OfOthers")
+    with pytest.raises(SelectionError, match="OFOTHERS matches OTHERS descriptors only"):
+        select(installed_methods(), "*,+heavy")
+    register("descriptor", "WEIGHTS", f"{module}:Weights")
+    with pytest.raises(SelectionError, match=r"WEIGHTS is unavailable: weights.bin does not"):
+        select(installed_methods(), "*,+heavy")
 
 
 def test_a_detector_that_limits_itself_is_told_how_many_keypoints_are_kept(module: str) -> None:

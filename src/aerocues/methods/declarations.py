@@ -76,8 +76,13 @@ def why_no_file(needed: Mapping[str, str]) -> str | None:
     if not needed:
         return None
     named = os.environ.get(needed.get("variable", ""))
-    path = Path(named or needed["path"]).expanduser()
-    return None if path.is_file() else f"{path} does not exist; {needed['remedy']}"
+    path = Path(named or needed["path"])
+    try:
+        path = path.expanduser()
+        return None if path.is_file() else f"{path} does not exist; {needed['remedy']}"
+    except (OSError, RuntimeError) as error:  # a name too long, a home of nobody
+        reason = error.strerror if isinstance(error, OSError) else error
+        return f"{path} cannot be opened ({reason}); {needed['remedy']}"
 
 
 class _UnfitError(Exception):

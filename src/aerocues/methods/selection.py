@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
@@ -171,10 +171,26 @@ def _require_sets(sets: Iterable[str], can_run: Iterable[Combination], methods: 
     """Check that something of each set that is asked for can be used here."""
     usable = {row.on_request for each in can_run for row in methods.rows(each)}
     for name in sorted(set(sets) - usable):
-        rows: list[Any] = [*methods.detectors.values(), *methods.matchers.values()]
-        lacking = next(row for row in rows if row.on_request == name)
-        told = f"{lacking.name} is unavailable: {lacking.unavailable}"
-        raise SelectionError(f"nothing of {WITH}{name} can be used here: {told}")
+        reason = _why_unusable(name, methods)
+        raise SelectionError(f"nothing of {WITH}{name} can be used here: {reason}")
+
+
+def _why_unusable(name: str, methods: Methods) -> str | None:
+    """Why no method of a set can be used: one is not there, or nothing that is there fits it."""
+    tables: tuple[Mapping[str, Any], ...]
+    tables = (methods.detectors, methods.descriptors, methods.matchers)
+    for row in (row for table in tables for row in table.values() if row.on_request == name):
+        if row.unavailable:
+            return f"{row.name} is unavailable: {row.unavailable}"
+    with_one = (
+        each
+        for each in methods.combinations(on_request=True)
+        if any(row.on_request == name for row in methods.rows(each))
+    )
+    reasons = (
+        why_unavailable(each, methods) or why_incompatible(each, methods) for each in with_one
+    )
+    return next(filter(None, reasons), None)
 
 
 def _by_component(
