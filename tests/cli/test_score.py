@@ -77,7 +77,7 @@ def test_others_are_tested_against_a_chosen_one_and_columns_chosen(
 ) -> None:
     one = "AKAZE-AKAZE-HAM-BF"
     target = tmp_path / "short.tex"
-    options = ("--resamples", 20, "--against", one)
+    options = ("--resamples", 20, "--against", one.lower())
     told = json.loads(call("score", finished, *options, "--json").out)
     assert told["settings"]["against"] == one
     names = ("--columns", "rank,combination,p_value")
@@ -87,6 +87,22 @@ def test_others_are_tested_against_a_chosen_one_and_columns_chosen(
     assert "rank & combination & p\\_value" in target.read_text()
     assert call("score", finished, *options, "--latex", target, "--columns", "speed").code == 2
     assert call("score", finished, "--against", "ORB").code == 2
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--latex", "-", "--columns", "rank,rank"),
+        ("--markdown", "-", "--columns", " , "),
+        ("--columns", "rank"),
+    ],
+)
+def test_columns_that_say_nothing_are_refused(
+    call: Call, finished: Path, options: tuple[str, ...]
+) -> None:
+    answer = call("score", finished, *options)
+    assert answer.code == 2
+    assert "--columns" in answer.err
 
 
 def test_choices_change_what_is_scored(call: Call, finished: Path) -> None:

@@ -191,6 +191,7 @@ def test_others_are_compared_with_a_chosen_one() -> None:
     middle = table.alternatives[1]
     found = compare_with_one(scores, resampled, against=middle)
     assert (found.one, found.surpassed().tolist(), found.surpassing().tolist()) == (1, [0], [2])
+    assert compare_with_one(scores, resampled, against=middle.upper()).one == found.one
     assert compare_with_one(scores, resampled).surpassing().tolist() == []
     with pytest.raises(ArgumentError, match="against"):
         compare_with_one(scores, resampled, against="nobody")

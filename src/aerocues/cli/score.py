@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -33,6 +33,7 @@ from aerocues.cli.scoring import (
     WeightsOption,
 )
 from aerocues.defaults import RESAMPLES, TOP_K
+from aerocues.errors import ArgumentError
 from aerocues.scoring.settings import names_of
 
 if TYPE_CHECKING:
@@ -125,6 +126,8 @@ def score(
         drawn = {"dataset": dataset, "resamples": resamples, "seed": seed}
         _for_purpose(folder, objective, {**limits.given(), **drawn}, targets, top, as_json=as_json)
         return
+    if columns is not None:
+        _check_columns(names_of(columns), latex or markdown)
     import aerocues
     from aerocues.cli.interruption import interruptible
     from aerocues.cli.ranking_table import facts, print_scores
@@ -151,7 +154,7 @@ def score(
             interval=interval.value,
             test=test.value,
             top_k=top_k,
-            against=against.upper() if against else None,
+            against=against,
         )
     _write(ranking, targets, top, columns)
     if STANDARD_OUTPUT in targets.values():
@@ -169,6 +172,15 @@ def _refuse_settings(context: typer.Context) -> None:
             raise typer.BadParameter(
                 f"{written} is for CUES, not for an objective or limits; leave it out"
             )
+
+
+def _check_columns(names: Sequence[str], target: str | None) -> None:
+    if target is None:
+        raise ArgumentError("`columns` are those of --latex and --markdown; give one of the two")
+    if not names:
+        raise ArgumentError("`columns` must name one column or more, such as rank,combination")
+    if doubled := sorted({name for name in names if names.count(name) > 1}):
+        raise ArgumentError(f"`columns` must name each column once, got {doubled[0]!r} twice")
 
 
 def _for_purpose(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
@@ -190,7 +191,13 @@ def compare_with_one(
 
 
 def _position(scores: Scores, name: str) -> int:
+    """Of the alternative of this name, in any case."""
     names = scores.table.alternatives
-    if name not in {names[position] for position in scores.order}:
-        raise ArgumentError(f"`against` must be one of those that have a score, got {name!r}")
-    return list(names).index(name)
+    scored = [names[position] for position in scores.order]
+    written = {each.casefold(): each for each in scored}
+    found = name if name in scored else written.get(name.casefold())
+    if found is None:
+        close = get_close_matches(name.casefold(), written)
+        hint = f"; did you mean {', '.join(written[each] for each in close)}?" if close else ""
+        raise ArgumentError(f"`against` must be one of those that have a score, got {name!r}{hint}")
+    return list(names).index(found)
