@@ -23,6 +23,12 @@ def test_height_and_angles_are_read(packet: str) -> None:
     assert gimbal_view(packet.encode()) == GimbalView(39.8, -89.9, -140.0, 0.0)
 
 
+def test_heights_have_more_digits_than_angles() -> None:
+    view = gimbal_view(ATTRIBUTES.replace("+39.80", "+1234.50"))
+    assert view is not None
+    assert view.height == 1234.5
+
+
 @pytest.mark.parametrize(
     "packet",
     [

@@ -22,6 +22,7 @@ PACKET = '<rdf:Description drone-dji:FlightYawDegree="+12.50" {}/>'
         ("<Camera:Pitch>-1.5</Camera:Pitch><Camera:Yaw> 83.25 </Camera:Yaw>", 83.25),
         (b"\xff<a:GimbalYaw>-7</a:GimbalYaw>", -7.0),
         ('a:YawRate="3" a:Yaw="unknown"', None),
+        ('a:Yaw="1000.5"', None),
         (None, None),
     ],
 )

@@ -103,6 +103,15 @@ def test_the_yaw_of_metadata_joins_groups_where_it_agrees_with_the_pixels() -> N
     assert set(turns_to_common_heading(apart, known).values()) == {0}
 
 
+@pytest.mark.parametrize("names", ["abcd", "bacd"])
+def test_a_turn_between_any_two_images_counts_whichever_is_first(names: str) -> None:
+    """Of 80 degrees between b and c; a lies in the middle."""
+    a, b, c = (names.index(name) for name in "abc")
+    flight = survey(names, (a, b, -40.0), (a, c, 40.0))
+    yaws = {"a": 0.0, "b": 40.0, "c": -40.0, "d": 180.0}
+    assert turns_to_common_heading(flight, yaws)["d"] == 180
+
+
 def test_nothing_is_surveyed_before_arguments_are_checked_or_without_time(
     as_flown: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

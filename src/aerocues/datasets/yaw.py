@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 
 # As attributes or elements, under the prefixes of DJI, Parrot, senseFly, Autel and others.
-_WRITTEN = r"""\b[\w-]+:{name}\s*(?:=\s*["']|>)\s*([+-]?\d{{1,3}}(?:\.\d{{0,9}})?)\s*["'<]"""
+_WRITTEN = r"""\b[\w-]+:{name}\s*(?:=\s*["']|>)\s*([+-]?\d{{1,6}}(?:\.\d{{0,9}})?)\s*["'<]"""
 _NAMES = ("GimbalYawDegree", "GimbalYaw", "Yaw", "FlightYawDegree")
 """The camera's own yaw before that of the drone."""
+TURN = 360.0
 
 
 def yaw_of(xmp: bytes | str | None) -> float | None:
@@ -19,7 +20,7 @@ def yaw_of(xmp: bytes | str | None) -> float | None:
         The XMP packet of an image file.
     """
     values = (written_number(xmp, name) for name in _NAMES)
-    return next((value for value in values if value is not None), None)
+    return next((value for value in values if value is not None and abs(value) <= TURN), None)
 
 
 def written_number(xmp: bytes | str | None, name: str) -> float | None:

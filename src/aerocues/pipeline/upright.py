@@ -18,8 +18,8 @@ from aerocues.pipeline.survey import Survey
 
 AGREE = 20.0
 """Degrees by which the yaw of metadata may differ from the rotation of the pixels."""
-TURNED = 0.5
-"""Cosine of the rotation from which on an image is turned: 60 degrees."""
+TURNED = 60.0
+"""Degrees from which on images are turned against each other."""
 NO_YAWS: Mapping[str, float] = MappingProxyType({})
 
 
@@ -132,10 +132,16 @@ def _joined(
         away = np.abs(np.degrees(np.angle(apart / common)))
         if not away.max() <= AGREE:
             return headings, groups
-        turned |= bool(np.cos(np.radians(headings[own] - headings[own][0])).min() < TURNED)
+        turned |= _least_arc(headings[own]) >= TURNED
         joined[groups == group] -= np.degrees(np.angle(common))
         merged[groups == group] = -1
     return (joined, merged) if turned else (headings, groups)
+
+
+def _least_arc(headings: NDArray[np.float64]) -> float:
+    """Degrees of the least arc that holds all headings, whatever their order."""
+    around = np.sort(headings % 360)
+    return float(360 - np.diff(around, append=around[0] + 360).max())
 
 
 def _quarters(headings: NDArray[np.float64]) -> NDArray[np.int64]:
