@@ -203,6 +203,8 @@ def main() -> None:
     if asked.what == "tables":
         tables(asked.folder)
         return
+    if asked.dataset is None or asked.name is None:
+        parser.error(f"{asked.what} needs DATASET and NAME")
     folder = asked.folder / asked.name
     combinations = [*asked.combinations.split(","), *([LIGHTGLUE] if asked.lightglue else [])]
     if asked.what == "measure":
