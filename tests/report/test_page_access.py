@@ -80,6 +80,36 @@ def test_light_and_dark_follow_the_system_until_chosen(open_report: Open) -> Non
     _wait_for_theme(opened, "light")
 
 
+HELD = """
+  const Real = window.DecompressionStream;
+  const held = new Promise(done => { window.release = done; });
+  window.DecompressionStream = class {
+    constructor(kind) {
+      const hold = async (chunk, stream) => { await held; stream.enqueue(chunk); };
+      const [real, gate] = [new Real(kind), new TransformStream({transform: hold})];
+      real.readable.pipeTo(gate.writable);
+      Object.assign(this, {writable: real.writable, readable: gate.readable});
+    }
+  };
+"""
+"""Holds back what is unpacked until the page is told to release it."""
+
+
+def test_paper_before_plotly_says_what_is_not_drawn(open_report: Open) -> None:
+    opened = open_report()
+    opened.page.add_init_script(HELD)
+    opened.page.reload()
+    opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    drawn = "figure.figure:has(.main-svg)"
+    assert opened.page.locator(drawn).count() > 0
+    told = opened.page.locator("figure.figure .nothing", has_text="not drawn yet")
+    assert told.count() > 0
+    assert opened.page.locator("figure.figure:not(:has(.main-svg, .nothing))").count() == 0
+    opened.page.evaluate("window.dispatchEvent(new Event('afterprint')); release()")
+    opened.page.locator("#figure-weights").scroll_into_view_if_needed()
+    opened.page.wait_for_selector("#figure-weights .main-svg")
+
+
 @pytest.mark.slow
 def test_paper_has_every_figure(open_report: Open) -> None:
     opened = open_report(color_scheme="dark")

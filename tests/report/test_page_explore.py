@@ -40,6 +40,12 @@ def test_a_point_opens_and_is_marked_in_other_figures(open_report: Open) -> None
     assert opened.fragment().startswith("decide.pick=")
 
 
+def _seconds_of_pareto(opened: Opened) -> list[str]:
+    """The words at the ticks of times, which do not depend on the colours."""
+    texts = opened.page.locator("#figure-pareto svg > g:first-of-type text")
+    return [text for text in texts.all_text_contents() if text.endswith(" s")]
+
+
 def test_dragging_over_points_shows_them_larger(open_report: Open) -> None:
     opened = open_report()
     opened.figure("pareto")
@@ -53,22 +59,60 @@ def test_dragging_over_points_shows_them_larger(open_report: Open) -> None:
     opened.page.mouse.up()
     assert drawing.text_content() != whole
     assert not opened.page.locator("#drawer").is_visible()
+    larger, zoomed = drawing.text_content(), _seconds_of_pareto(opened)
+    colour = opened.page.locator("#figure-pareto select").last
+    chosen = colour.input_value()
+    colour.select_option(index=2)
+    opened.page.wait_for_function(
+        "before => document.querySelector('#figure-pareto svg').textContent !== before",
+        arg=larger,
+    )
+    assert _seconds_of_pareto(opened) == zoomed
+    colour.select_option(chosen)
+    opened.page.wait_for_function(
+        "before => document.querySelector('#figure-pareto svg').textContent === before",
+        arg=larger,
+    )
     opened.page.mouse.dblclick(box["x"] + 150, box["y"] + 300)
     assert drawing.text_content() == whole
 
 
-def test_the_first_screen_needs_no_plotly(open_report: Open, report: Path, tmp_path: Path) -> None:
-    """As in a browser that is too old to unpack it."""
-    file = tmp_path / "old.html"
-    text = report.read_text(encoding="utf-8").replace('id="plotly">', 'id="plotly">-')
-    file.write_text(text, encoding="utf-8")
-    opened = open_report(file=file)
+def test_a_drag_that_is_no_zoom_opens_nothing(open_report: Open) -> None:
+    opened = open_report()
+    opened.figure("pareto")
+    box = opened.page.locator("#figure-pareto .points path").first.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    opened.page.mouse.move(x - 12, y)
+    opened.page.mouse.down()
+    opened.page.mouse.move(x, y)
+    opened.page.mouse.up()
+    assert not opened.page.locator("#drawer").is_visible()
+    opened.page.mouse.click(x, y)
+    assert opened.page.locator("#drawer").is_visible()
+
+
+def test_the_first_screen_needs_no_plotly(open_report: Open) -> None:
+    opened = open_report()
+    opened.page.add_init_script("delete window.DecompressionStream")
+    opened.page.reload()
     opened.figure("pareto")
     opened.figure("map")
     opened.figure("heat")
     assert opened.page.locator("#figure-heat .main-svg").count() == 1
     opened.figure("weights")
     assert "too old to draw" in opened.page.inner_text("#figure-weights .nothing")
+
+
+def test_damage_of_plotly_is_not_called_an_old_browser(
+    open_report: Open, report: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "damaged.html"
+    text = report.read_text(encoding="utf-8").replace('id="plotly">', 'id="plotly">-')
+    file.write_text(text, encoding="utf-8")
+    opened = open_report(file=file)
+    opened.figure("weights")
+    assert "damaged" in opened.page.inner_text("#figure-weights .nothing")
 
 
 def test_limits_keep_what_is_between_them_and_the_worst(open_report: Open) -> None:

@@ -15,7 +15,7 @@ import {PICTURES_SECTION} from "./pictures/section.js";
 import {MODELS_SECTION} from "./models/section.js";
 import {METHOD_SECTION} from "./method/section.js";
 import {drawFigure, drawStale, drawWaiting, figures, onChosen, refreshFigures} from "./shell/figure.js";
-import {unpackPlotly} from "./shell/plotly.js";
+import {startPlotly, unpackPlotly} from "./shell/plotly.js";
 import {addSection, buildMasthead, buildSections, buildToolbar, followScrolling, goTo, updateSections, updateToolbar} from "./shell/shell.js";
 
 /* In the order of the page. */
@@ -62,9 +62,10 @@ function start() {
   if (location.hash && !location.hash.includes("=")) goTo(location.hash.slice(1));
 }
 
-/* The printed page is light and narrow, and has every figure. */
+/* The printed page is light and narrow, and has every figure, or says that it was not drawn yet. */
 function drawForPrint() {
   document.documentElement.classList.add("printing");
+  startPlotly();
   applyTheme();
   refreshClouds();
   for (const figure of figures) drawFigure(figure);

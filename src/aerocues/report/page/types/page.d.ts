@@ -296,6 +296,10 @@ interface Scatter {
   marks: ScatterMark[];
   labels: ScatterLabel[];
   open(name: string): void;
+  /** Of x and y, in place of all values. */
+  zoomed: AxisRange[] | null;
+  /** Remembers what is shown larger for the next drawing; null: all. */
+  keepZoom(ranges: AxisRange[] | null): void;
 }
 
 /* Sections */

@@ -20,6 +20,10 @@ function firstMeasure(entry, keys) {
   return keys.find(key => measureOf(entry, key)) ?? "score";
 }
 
+/** The part that is shown larger, and of which figure: of an entry and two measures.
+ * @type {{of: string, ranges: AxisRange[] | null}} */
+let zoom = {of: "", ranges: null};
+
 /** @type {FigureSpec} */
 export const SPEED_QUALITY = {
   id: "pareto", title: "Speed against quality", showsAnswer: true,
@@ -56,7 +60,9 @@ function scatterOf(context, drawn, front, x, y) {
   const marks = winner === null ? [] : [{...place(winner), symbol: "star"}];
   if (picked !== undefined) marks.push({...place(picked), symbol: "ring"});
   const names = frontLabels(context, front.filter(a => a !== winner), x, y, axes).map(label => ({...label, ...place(label.a)}));
+  const of = [entry.name, x.key, y.key].join("\n");
   return {
+    zoomed: zoom.of === of ? zoom.ranges : null, keepZoom: ranges => { zoom = {of, ranges}; },
     id: "pareto", width, height: narrow ? 400 : 455, narrow, colours, ...axes, marks,
     line: front.map(place), groups: groupsOf(context, drawn, x, y),
     labels: winner === null ? names : [...names, {...place(winner), text: entry.combinations[winner], bold: true, dx: 16, dy: 30}],

@@ -19,6 +19,7 @@ const NARROW = 480;
 /* Two figures with their words fit on a page; rows with names keep room for these. */
 const PRINTED_HEIGHT = 340;
 const PRINTED_SHARE = 0.7;
+const NOT_YET = "This figure is not drawn yet: its program is still being unpacked.";
 const CONFIG = {displayModeBar: false, responsive: false, doubleClick: "reset+autosize"};
 
 /** @param {HTMLElement} parent @param {FigureSpec} spec */
@@ -77,8 +78,8 @@ export function drawFigure(figure) {
   const wanted = describeFigure(figure, context);
   const lacks = wanted.empty === undefined && !wanted.svg && !window.Plotly;
   figure.waits = lacks && withoutPlotly === null;
-  if (figure.waits) return;
-  const drawn = lacks ? {empty: withoutPlotly ?? ""} : wanted;
+  if (figure.waits && !isPrinting()) return;
+  const drawn = lacks ? {empty: withoutPlotly ?? NOT_YET} : wanted;
   figure.element.classList.toggle("empty", Boolean(drawn.empty));
   showNote(figure, drawn);
   if (drawn.empty !== undefined) {
@@ -156,7 +157,7 @@ async function saveFigure(figure, format) {
   const stem = fileStem(context.entry.name, figure.title);
   if (format === "CSV") return saveCsv(stem, ...(drawn.svg ? drawn.table : tableOfTraces(drawn.data)));
   if (drawn.svg) return saveDrawing(drawn.svg(), stem, format);
-  if (!window.Plotly) return announce(withoutPlotly ?? "The figure is not drawn yet.");
+  if (!window.Plotly) return announce(withoutPlotly ?? NOT_YET);
   const layout = fullLayout(drawn, context);
   const kind = format.toLowerCase();
   const url = await Plotly.toImage({data: drawn.data, layout, config: CONFIG},

@@ -7,12 +7,12 @@ import {FONT, widestText} from "./figure-layout.js";
 
 const REACH = 20;
 const LEAST_DRAG = 8;
+const STILL = 4;
 const touched = window.matchMedia("(pointer: coarse)");
 
-/** @param {Scatter} scatter @param {AxisRange[]} [zoomed] of x and y, in place of all values
- * @returns {SVGSVGElement} */
-export function scatterDrawing(scatter, zoomed) {
-  const {width, height, colours} = scatter;
+/** @param {Scatter} scatter @returns {SVGSVGElement} */
+export function scatterDrawing(scatter) {
+  const {width, height, colours, zoomed} = scatter;
   const legend = legendOf(scatter);
   const box = boxOf(scatter, legend.height);
   const [rangeX, rangeY] = zoomed ?? [scatter.x.range, scatter.y.range];
@@ -31,12 +31,16 @@ export function scatterDrawing(scatter, zoomed) {
       scatter.marks.map(mark => marked(mark, x.at(mark.x), y.at(mark.y), colours))),
     scatter.labels.filter(label => isInside(box, x.at(label.x), y.at(label.y))).map(label => labelled(label, x.at(label.x), y.at(label.y), box, colours)));
   const near = (/** @type {MouseEvent} */ event) => nearestTo(svg, spots.filter(spot => isInside(box, spot.px, spot.py)), event);
-  svg.addEventListener("click", event => { const spot = near(event); if (spot) scatter.open(spot.name); });
+  openByClicking(svg, event => { const spot = near(event); if (spot) scatter.open(spot.name); });
   svg.addEventListener("pointermove", event => { svg.style.cursor = near(event) ? "pointer" : "default"; });
   if (!touched.matches) {
-    zoomByDragging(svg, box, colours, ([left, bottom], [right, top]) => svg.replaceWith(scatterDrawing(scatter, [
-      {...rangeX, low: x.inverse(left), high: x.inverse(right)}, {...rangeY, low: y.inverse(bottom), high: y.inverse(top)}])));
-    svg.addEventListener("dblclick", () => { if (zoomed) svg.replaceWith(scatterDrawing(scatter)); });
+    const show = (/** @type {AxisRange[] | null} */ ranges) => {
+      scatter.keepZoom(ranges);
+      svg.replaceWith(scatterDrawing({...scatter, zoomed: ranges}));
+    };
+    zoomByDragging(svg, box, colours, ([left, bottom], [right, top]) => show([
+      {...rangeX, low: x.inverse(left), high: x.inverse(right)}, {...rangeY, low: y.inverse(bottom), high: y.inverse(top)}]));
+    svg.addEventListener("dblclick", () => { if (zoomed) show(null); });
   }
   return withTips(svg, event => near(event)?.tip ?? "");
 }
@@ -119,6 +123,16 @@ function nearestTo(svg, spots, event) {
     if (distance <= least) [found, least] = [spot, distance];
   }
   return found;
+}
+
+/** A click is no end of a drag: the pointer stayed where it went down.
+ * @param {SVGSVGElement} svg @param {(event: MouseEvent) => void} open */
+function openByClicking(svg, open) {
+  let down = {x: 0, y: 0};
+  svg.addEventListener("pointerdown", event => { down = {x: event.clientX, y: event.clientY}; });
+  svg.addEventListener("click", event => {
+    if (Math.hypot(event.clientX - down.x, event.clientY - down.y) <= STILL) open(event);
+  });
 }
 
 /** Dragging over a part shows it larger: `zoom` gets its corners in pixels, bottom left and top right.
