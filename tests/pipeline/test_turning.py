@@ -15,6 +15,8 @@ from aerocues.datasets.dataset import Dataset, Image, Pixels, with_turns
 from aerocues.datasets.decoded import DecodedSource
 from aerocues.datasets.decoding import FileSource
 from aerocues.errors import SelectionError
+from aerocues.evaluation import run_settings
+from aerocues.evaluation.run import plan_run
 from aerocues.methods import plugins
 from aerocues.methods.arrays import Features, Keypoints, Matches
 from aerocues.methods.combination import Combination
@@ -123,6 +125,28 @@ def test_nothing_is_surveyed_before_arguments_are_checked_or_without_time(
     spent = time.monotonic() - 60
     with pytest.raises(SelectionError, match="surveying the flight"):
         aerocues.recommend(as_flown, "SIFT-*,ORB-*", tmp_path, upright=True, budget=60, began=spent)
+
+
+def test_a_flight_is_surveyed_once_for_a_plan(
+    as_flown: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = aerocues.open_dataset(str(as_flown_folder(as_flown)))
+    made = Survey(
+        tuple(image.name for image in opened.images),
+        ((0, 1), (1, 2)),
+        tuple(SurveyedPair(one, one + 1, 50, 0.5, 180.0, 1.0) for one in (0, 1)),
+    )
+    surveys: list[Survey] = []
+
+    def survey(self: Surveyor, progress: object) -> Survey:
+        surveys.append(made)
+        return made
+
+    monkeypatch.setattr(Surveyor, "survey", survey)
+    monkeypatch.setattr(run_settings, "FEWEST_SURVEYED", 3)
+    passes = plan_run(opened, str(SIFT), tmp_path / "none", upright=True, timing="shared")
+    assert len(surveys) == 1
+    assert [plan.rows_planned for _, plan in passes] == [2]
 
 
 class Noted:

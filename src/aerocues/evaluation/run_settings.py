@@ -15,8 +15,8 @@ from aerocues.evaluation.run_progress import RunProgress
 from aerocues.evaluation.unit import Context
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.strongest import KeypointLimit
-from aerocues.pipeline.flight_pairs import survey_flight
-from aerocues.pipeline.upright import turned_upright
+from aerocues.pipeline.flight_pairs import survey_flight, surveyed
+from aerocues.pipeline.upright import turned_as_surveyed
 from aerocues.results.store import Store
 from aerocues.results.timing import TIMINGS, Timing
 
@@ -66,13 +66,16 @@ class RunSettings:
         The preset of the thesis keeps the consecutive pairs. Images are turned if that is asked
         for.
         """
-        folder = store.surveys if store else None
+        folder, survey = store.surveys if store else None, None
         if self.upright:
-            dataset = turned_upright(dataset, self.seed, told.surveyed, folder, keep=keep)
+            survey = surveyed(dataset, self.seed, told.surveyed, folder, keep=keep)
+            dataset = turned_as_surveyed(dataset, survey)
             told.note(dataset.notes[-1])
         if not self.parts.chance_test or len(dataset.images) < FEWEST_SURVEYED:
             return dataset
-        flight = survey_flight(dataset, RACE_PAIRS, self.seed, told.surveyed, folder, keep=keep)
+        flight = survey_flight(
+            dataset, RACE_PAIRS, self.seed, told.surveyed, folder, keep=keep, survey=survey
+        )
         for note in flight.notes() if flight else ():
             told.note(note)
         return flight.dataset if flight else dataset

@@ -97,6 +97,7 @@ def survey_flight(
     folder: Path | None = None,
     *,
     keep: bool = True,
+    survey: Survey | None = None,
 ) -> SurveyedFlight | None:
     """A flight with representative pairs in place of the consecutive ones.
 
@@ -115,6 +116,8 @@ def survey_flight(
         Where surveys are kept; one that is there is not made again.
     keep : bool
         Whether a new survey is written there.
+    survey : Survey, optional
+        The survey of these images where it was made already; how they are turned does not count.
 
     Returns
     -------
@@ -123,7 +126,7 @@ def survey_flight(
     """
     if not leaves_pairs_open(dataset):
         return None
-    survey = surveyed(dataset, seed, progress, folder, keep=keep)
+    survey = survey or surveyed(dataset, seed, progress, folder, keep=keep)
     chosen = representatives(survey, enough_pairs(len(dataset.images), most), seed)
     if not chosen.pairs:
         return None
@@ -143,7 +146,7 @@ def surveyed(
     progress: Callable[[int, int], None],
     folder: Path | None,
     *,
-    keep: bool,
+    keep: bool = True,
 ) -> Survey:
     """The survey of all images of a dataset; parameters as in `survey_flight`."""
     if folder is None:

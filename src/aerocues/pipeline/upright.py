@@ -69,13 +69,16 @@ def turned_upright(
     seed: int,
     progress: Callable[[int, int], None] = lambda done, total: None,
     folder: str | Path | None = None,
-    *,
-    keep: bool = True,
 ) -> Dataset:
-    """As `upright`, of what is opened; `keep`: whether a new survey is written to the folder."""
+    """As `upright`, of what is opened."""
     place = None if folder is None else Path(folder)
+    return turned_as_surveyed(dataset, surveyed(dataset, seed, progress, place))
+
+
+def turned_as_surveyed(dataset: Dataset, survey: Survey) -> Dataset:
+    """Images that are turned to a common heading, which a survey of them shows."""
     yaws = {image.name: image.yaw for image in dataset.images if image.yaw is not None}
-    turns = turns_to_common_heading(surveyed(dataset, seed, progress, place, keep=keep), yaws)
+    turns = turns_to_common_heading(survey, yaws)
     count = sum(turn != 0 for turn in turns.values())
     told = f"{count} of {len(turns)} images are turned to a common heading"
     return replace(with_turns(dataset, turns), notes=(*dataset.notes, told))
