@@ -138,18 +138,7 @@ def reconstruct(
         If an argument, the scene, the selection or a folder does not allow it. A reconstruction
         that fails is a row with its reason, and no error.
     """
-    if combinations is not None and top is not None:
-        raise ArgumentError("`top` chooses among `results`; leave `top` or `combinations` out")
-    if combinations is None and results is None:
-        raise ReconstructionError(
-            "there are no combinations; give some as `combinations`, or measured `results`"
-        )
-    if not baseline and combinations is not None and baseline_alone(combinations):
-        raise ArgumentError(
-            "`combinations` names COLMAP's default alone; leave `baseline=False` out"
-        )
-    if top is not None:
-        check_whole("top", top, 1)
+    _check_chosen(combinations, results, top, baseline=baseline)
     measured = None if results is None else as_results(results)
     scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)
     store = None if measured is None else open_results(measured.folder, scene)
@@ -182,6 +171,24 @@ def reconstruct(
         )
         options = replace(options, preset=parts)
     return reconstruct_scene(scene, combinations, Path(output), options, progress, store)
+
+
+def _check_chosen(
+    combinations: Patterns | None, results: object, top: int | None, *, baseline: bool
+) -> None:
+    """Raise AerocuesError unless it is clear of what models are made."""
+    if combinations is not None and top is not None:
+        raise ArgumentError("`top` chooses among `results`; leave `top` or `combinations` out")
+    if combinations is None and results is None:
+        raise ReconstructionError(
+            "there are no combinations; give some as `combinations`, or measured `results`"
+        )
+    if not baseline and combinations is not None and baseline_alone(combinations):
+        raise ArgumentError(
+            "`combinations` names COLMAP's default alone; leave `baseline=False` out"
+        )
+    if top is not None:
+        check_whole("top", top, 1)
 
 
 def turned_scene(
