@@ -136,7 +136,7 @@ def _costs(found: Recommendation, best: dict[str, Any]) -> list[str]:
         f"{best['verify_seconds']:.3f} s to verify, on one core of {found.machine}",
     ]
     if quickly_matched(found.leader) != found.leader:
-        told.append("the matcher EXACT finds the matches of BF in about a fifth of its time")
+        told.append("the matcher EXACT finds the matches of BF in a fraction of its time")
     return told
 
 

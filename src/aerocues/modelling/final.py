@@ -116,7 +116,7 @@ def _with_leader(
 
 
 def exactly_matched(combination: Combination) -> Combination:
-    """The same with the exact matcher: the matches of brute force in a fifth of its time.
+    """The same with the exact matcher: the matches of brute force in a fraction of its time.
 
     Matchers that find other matches stay, but FLANN, which finds nearly the same.
     """

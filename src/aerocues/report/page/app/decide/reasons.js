@@ -85,7 +85,7 @@ function certaintyOfRace(race) {
   const ends = {budget: "the budget was spent", sure: "the leader was sure enough", measured: "all possible winners were measured on all pairs"};
   const missing = race.final?.unfinished.length ? ` No time for the models of ${race.final.unfinished.join(", ")}.` : "";
   const built = race.final?.models.length ? ` Models of ${race.final.images} of ${race.final.of} images decided.` : "";
-  const quicker = race.best.endsWith("-BF") ? " EXACT in place of BF finds the same matches in about a fifth of the time for matching." : "";
+  const quicker = race.best.endsWith("-BF") ? " EXACT in place of BF finds the same matches in a fraction of the time for matching." : "";
   return `${race.leader} led with a probability of ${percent(race.probability)}.${built}${missing} `
     + `The race measured ${race.measured} of ${race.combinations} combinations on up to ${pairsOfRace(race)}, `
     + `${counted(race.measurements, "measurement")} in ${duration(race.seconds)}; ${ends[/** @type {keyof typeof ends} */ (race.ended)] ?? race.ended}.${quicker}`;
