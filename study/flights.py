@@ -41,7 +41,10 @@ def make_flight(
     if missing := [source for source in sources if not source.is_dir()]:
         raise DatasetError(f"{missing[0]} is missing; set AEROCUES_SHARED_DATA to the images")
     folder.mkdir(parents=True, exist_ok=True)
-    images = {file.name: file for source in sources for file in sorted(source.iterdir())}
+    content = (file for source in sources for file in sorted(source.iterdir()))
+    images = {file.name: file for file in content if file.is_file()}
     for name, file in images.items():
         if not (folder / name).exists():
-            shutil.copyfile(file, folder / name)
+            # Under another name until it is whole: an interrupted copy is made again.
+            shutil.copyfile(file, unfinished := folder / f"{name}.part")
+            unfinished.replace(folder / name)

@@ -11,25 +11,27 @@ import resource
 import shutil
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import aerocues
 from aerocues.arguments import seconds_of
-from aerocues.errors import AerocuesError, DatasetError, StoreError
+from aerocues.cli.interruption import Interrupted, interruptible
+from aerocues.errors import AerocuesError, ArgumentError, DatasetError, StoreError
+from aerocues.evaluation.dask_scheduler import connected
 from aerocues.phrases import count, spoken_seconds
 from aerocues.progress import Event
 from aerocues.results.store import RUN
 from aerocues.results.study import FACTS, add_part
 from study.flights import make_flight
-from study.plan import CONFIGURATION, FOLDER, Plan, Step, read_plan
+from study.plan import CONFIGURATION, FOLDER, UNFINISHED, Plan, Step, images_of, read_plan
 
 DATABASE, WORK = FOLDER / "database", FOLDER / "work"
 DATA = Path(os.environ.get("AEROCUES_SHARED_DATA", FOLDER.parent.parent / "shared" / "data"))
 TOLD_EVERY = 60.0
-UNFINISHED = 3
 
 
 class BudgetSpentError(Exception):
@@ -90,9 +92,11 @@ class Study:
 
         Those whose images or modules are missing are skipped, which is told.
         """
+        skipped = 0
         for step in self.plan.of(parts):
             if missing := step.missing():
                 self.tell(f"{step.name}: skipped, as {', '.join(missing)} is not installed")
+                skipped += 1
                 continue
             if self.steps(step.part.name).get(step.short_name, {}).get("finished") == step.asked():
                 continue
@@ -100,10 +104,13 @@ class Study:
                 self.make(step)
             except DatasetError as error:
                 self.tell(f"{step.name}: skipped: {error}")
+                skipped += 1
             except BudgetSpentError:
                 self.tell(f"{step.name}: the budget is spent; the same command goes on from here")
                 return False
-        return True
+        if skipped:
+            self.tell(f"not finished: {count(skipped, 'step')} skipped")
+        return not skipped
 
     def make(self, step: Step) -> None:
         """Make one step, or what is left of it, and store the part, finished or not."""
@@ -128,8 +135,11 @@ class Study:
             "finished": step.asked() if finished else old.get("finished"),
         }
         hours = round(sum(each["seconds"] for each in steps.values()) / 3600, 4)
+        known = self.facts(part.name)
+        if "verified" in known and not self._same_rows(part.name):
+            del known["verified"]
         facts = {
-            **self.facts(part.name),
+            **known,
             "title": part.title,
             "licence": part.licence,
             "cpu_hours": hours,
@@ -143,6 +153,14 @@ class Study:
                 f"the database has {size:.1f} MB, more than {self.plan.max_megabytes:g}; "
                 "leave a part out"
             )
+
+    def _same_rows(self, part: str) -> bool:
+        """Whether the database has the rows of the results folder."""
+        new, kept = (
+            aerocues.Results(place / part).table().select("row_key", "measured_at")
+            for place in (self.work, self.database)
+        )
+        return new.equals(kept)
 
     def _restore(self, step: Step) -> None:
         """Go on from the database where the results folder is gone, as in a new checkout."""
@@ -160,7 +178,7 @@ class Study:
         for name, settings in self.plan.flights.items():
             if f"{{flights}}/{name}" in part.dataset:
                 make_flight(settings, flights / name, self.data, self.watch)
-        return part.dataset.format(data=self.data, flights=flights)
+        return images_of(part, self.data, flights)
 
     def watch(self, event: Event) -> None:
         """Tell how it goes on once a minute; BudgetSpentError when the time is up."""
@@ -227,54 +245,72 @@ def print_hours(steps: Sequence[Step], measured: Mapping[str, Mapping[str, float
     print(f"{'all':34s} {'':14s} {total / 3600:6.2f} CPU h")
 
 
+def parser() -> argparse.ArgumentParser:
+    """The options of the program."""
+    made = argparse.ArgumentParser(description="Measure the study, or go on with it.")
+    made.add_argument("--configuration", type=Path, default=CONFIGURATION)
+    made.add_argument("--only", action="append", default=[], metavar="PART")
+    made.add_argument("--budget", metavar="TIME", help="stop after this time, such as 30min")
+    made.add_argument("--dry-run", action="store_true", help="print the hours of each step")
+    made.add_argument("--verify", action="store_true", help="measure 5 %% of the rows again")
+    made.add_argument("--seed", type=int, default=1, help="draws these rows; the same for the same")
+    made.add_argument("--workers", type=int, metavar="N")
+    made.add_argument("--engine", choices=("local", "dask"), default="local")
+    made.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://host:8786")
+    made.add_argument("--data", type=Path, default=DATA, metavar="DIR", help="real images")
+    made.add_argument("--work", type=Path, default=WORK, metavar="DIR")
+    made.add_argument("--database", type=Path, default=DATABASE, metavar="DIR")
+    return made
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """The program; 0 if the study is finished, `UNFINISHED` if not, 2 for wrong input."""
-    parser = argparse.ArgumentParser(description="Measure the study, or go on with it.")
-    parser.add_argument("--configuration", type=Path, default=CONFIGURATION)
-    parser.add_argument("--only", action="append", default=[], metavar="PART")
-    parser.add_argument("--budget", metavar="TIME", help="stop after this time, such as 30min")
-    parser.add_argument("--dry-run", action="store_true", help="print the hours of each step")
-    parser.add_argument("--verify", action="store_true", help="measure 5 %% of the rows again")
-    parser.add_argument("--workers", type=int, metavar="N")
-    parser.add_argument("--engine", choices=("local", "dask"), default="local")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://host:8786")
-    parser.add_argument("--data", type=Path, default=DATA, metavar="DIR", help="real images")
-    parser.add_argument("--work", type=Path, default=WORK, metavar="DIR")
-    parser.add_argument("--database", type=Path, default=DATABASE, metavar="DIR")
-    asked = parser.parse_args(words)
+    asked = parser().parse_args(words)
     try:
-        budget = None if asked.budget is None else seconds_of("budget", asked.budget)
-        study = Study(
-            plan=read_plan(asked.configuration),
-            data=asked.data,
-            work=asked.work,
-            database=asked.database,
-            budget=budget,
-            engine=_engine(asked),
-            workers=asked.workers,
-        )
-        if asked.dry_run:
-            print_hours(study.plan.of(asked.only), study.measured())
-            return 0
-        if asked.verify:
-            from study.verify import verify
-
-            return verify(study, asked.only)
-        return 0 if study.measure(asked.only) else UNFINISHED
+        # Signals become exceptions: what was measured so far is stored with its CPU time.
+        with interruptible(), _engine(asked) as engine:
+            return _done(asked, engine)
+    except Interrupted as interruption:
+        print("interrupted; the same command goes on from here", file=sys.stderr)
+        return interruption.exit_code
     except BudgetSpentError:
         print("the budget is spent before everything was measured again", file=sys.stderr)
         return UNFINISHED
-    except AerocuesError as error:
+    except (AerocuesError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
 
 
-def _engine(asked: argparse.Namespace) -> Any:
-    if asked.engine == "local":
-        return None
-    from distributed import Client
+def _done(asked: argparse.Namespace, engine: Any) -> int:
+    study = Study(
+        plan=read_plan(asked.configuration),
+        data=asked.data,
+        work=asked.work,
+        database=asked.database,
+        budget=None if asked.budget is None else seconds_of("budget", asked.budget),
+        engine=engine,
+        workers=asked.workers,
+    )
+    if asked.dry_run:
+        print_hours(study.plan.of(asked.only), study.measured())
+        return 0
+    if asked.verify:
+        from study.verify import verify
 
-    return aerocues.DaskEngine(Client(asked.scheduler))
+        return verify(study, asked.only, asked.seed)
+    return 0 if study.measure(asked.only) else UNFINISHED
+
+
+@contextmanager
+def _engine(asked: argparse.Namespace) -> Iterator[Any]:
+    """What measures; None for processes of this machine."""
+    if (asked.engine == "dask") != (asked.scheduler is not None):
+        raise ArgumentError("give --engine dask and --scheduler tcp://HOST:8786 together")
+    if asked.scheduler is None:
+        yield None
+        return
+    with connected(asked.scheduler) as client:
+        yield aerocues.DaskEngine(client)
 
 
 if __name__ == "__main__":

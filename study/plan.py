@@ -17,6 +17,8 @@ from aerocues.results.hashing import content_hash
 
 FOLDER = Path(__file__).resolve().parent
 CONFIGURATION = FOLDER / "study.toml"
+UNFINISHED = 3
+"""Exit code where something is left to measure."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,11 @@ class Step:
         return f"{self.part.name} {self.short_name}"
 
     def asked(self) -> str:
-        """A hash of everything that decides what is measured."""
+        """A hash of what the configuration asks of it.
+
+        The settings of flights and versions of software are not in it: after a change there, remove
+        the part from the database and its work folder. ``seconds_per_row`` is in it without need.
+        """
         terms = asdict(self.part) | {"round": asdict(self.round) if self.round else None}
         told = ("title", "licence", "pairs", "rounds", "factor")
         return content_hash({name: value for name, value in terms.items() if name not in told})
@@ -148,6 +154,22 @@ class Plan:
         return tuple(step for step in self.steps if not parts or step.part.name in parts)
 
 
+def images_of(part: Part, data: Path | str, flights: Path | str) -> str:
+    """The images of a part in text form, as `aerocues.open_dataset` takes it."""
+    return part.dataset.format(data=data, flights=flights)
+
+
+def _checked(step: Step) -> Step:
+    """The step; TypeError, ValueError or AerocuesError where it cannot be measured."""
+    try:
+        images_of(step.part, "", "")
+        if not step.missing():
+            float(step.seconds({}))
+    except LookupError as error:
+        raise ValueError(f"{step.name} needs {error}, which does not exist") from error
+    return step
+
+
 def read_plan(file: Path = CONFIGURATION) -> Plan:
     """Read a configuration: all parts in the first round, then all parts in the second, and so on.
 
@@ -162,9 +184,9 @@ def read_plan(file: Path = CONFIGURATION) -> Plan:
         defaults = content.get("defaults", {})
         rounds = {each["name"]: Round(**each) for each in content["round"]}
         parts = [_part(each, defaults, tuple(rounds)) for each in content["part"]]
-        steps = tuple(_steps(parts, rounds))
+        steps = tuple(_checked(step) for step in _steps(parts, rounds))
         return Plan(steps, content.get("flight", {}), float(content["max_megabytes"]))
-    except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError) as error:
+    except (OSError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise ArgumentError(f"cannot read {file}: {error}; correct it") from error
 
 
@@ -178,7 +200,7 @@ def _steps(parts: Sequence[Part], rounds: Mapping[str, Round]) -> Iterator[Step]
     for part in parts:
         for name in part.rounds:
             if name not in rounds:
-                raise KeyError(f"{part.name} names the round {name!r}, which does not exist")
+                raise ValueError(f"{part.name} names the round {name!r}, which does not exist")
     for name, each in rounds.items():
         yield from (Step(part, each) for part in parts if name in part.rounds)
         # Models are stored with the rows of a part: its first round must be there.

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import aerocues
 from aerocues.datasets.dataset import Dataset, Pair
+from aerocues.errors import DatasetError
 from aerocues.phrases import count
 from aerocues.results.combination_columns import METHODS, combination_name
 from aerocues.results.metrics import METRICS
 from aerocues.results.schema import COUNTS, GROUND_TRUTH, OUTCOME, REFERENCE
 from aerocues.results.study import FACTS, add_part
-from study.plan import Step
+from study.plan import UNFINISHED, Step
 
 if TYPE_CHECKING:
     import polars as pl
 
     from study.measure import Study
 
-SHARE, SEED = 0.05, 1
+SHARE = 0.05
 SHOWN = 5
 PAIR = ("pair", "image_1", "image_2", "sequence")
 QUALITY = (
@@ -30,15 +33,24 @@ QUALITY = (
 """Columns that no clock has to do with."""
 
 
-def verify(study: Study, parts: Sequence[str] = ()) -> int:
-    """Measure 5 % of the rows of each part again, and note it; 0 if all are identical, else 1."""
+def verify(study: Study, parts: Sequence[str], seed: int) -> int:
+    """Measure 5 % of the rows of each part again, and note it.
+
+    The seed draws the rows: the same ones for the same seed and database. Returns 0 if all are
+    identical, 1 if not, `UNFINISHED` if a part was skipped, as images or modules are missing.
+    """
     database = aerocues.Study(study.database)
     first = {step.part.name: step for step in reversed(study.plan.of(parts))}
-    total = different = 0
+    total = different = skipped = 0
     for name in (name for name in first if name in database.names):
         rows = database.part(name).table()
-        sample = rows.sample(fraction=SHARE, seed=SEED) if len(rows) > 1 / SHARE else rows.head(1)
-        again = _measured_again(study, first[name], sample)
+        sample = rows.sample(fraction=SHARE, seed=seed) if len(rows) > 1 / SHARE else rows.head(1)
+        try:
+            again = _measured_again(study, first[name], sample)
+        except DatasetError as error:
+            study.tell(f"{name}: skipped: {error}")
+            skipped += 1
+            continue
         unequal = differing(sample, again)
         total, different = total + len(sample), different + len(unequal)
         same = {"again": len(sample), "identical": len(sample) - len(unequal)}
@@ -48,7 +60,7 @@ def verify(study: Study, parts: Sequence[str] = ()) -> int:
         for line in unequal.head(SHOWN).iter_rows():
             study.tell(f"  {' '.join(map(str, line))}")
     study.tell(f"all: {count(total, 'row')} measured again, {total - different:,} identical")
-    return 1 if different else 0
+    return 1 if different else UNFINISHED if skipped else 0
 
 
 def differing(stored: pl.DataFrame, again: pl.DataFrame) -> pl.DataFrame:
@@ -62,8 +74,19 @@ def differing(stored: pl.DataFrame, again: pl.DataFrame) -> pl.DataFrame:
 
 
 def _measured_again(study: Study, step: Step, sample: pl.DataFrame) -> pl.DataFrame:
-    """The rows of a sample, measured in a folder of their own, pair by pair."""
-    dataset, folder = study.dataset(step), study.work / "verify" / step.part.name
+    """The rows of a sample, measured in a new folder of their own, pair by pair."""
+    if missing := step.missing():
+        raise DatasetError(f"{', '.join(missing)} is not installed")
+    dataset = study.dataset(step)
+    study.work.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=study.work, prefix="verify-") as folder:
+        _measure_again(study, dataset, step, sample, Path(folder))
+        return aerocues.Results(folder).table()
+
+
+def _measure_again(
+    study: Study, dataset: Dataset, step: Step, sample: pl.DataFrame, folder: Path
+) -> None:
     settings = {k: v for k, v in step.part.run.items() if k not in ("timing", "timing_pairs")}
     for named, rows in sample.group_by(PAIR, maintain_order=True):
         number, image_1, image_2, sequence = named
@@ -77,7 +100,6 @@ def _measured_again(study: Study, step: Step, sample: pl.DataFrame) -> pl.DataFr
             workers=study.workers,
             progress=study.watch,
         )
-    return aerocues.Results(folder).table()
 
 
 def _of_pair(dataset: Dataset, pair: Pair) -> Dataset:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import signal
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
 
 import aerocues
 from aerocues.errors import ArgumentError
-from study.measure import main
+from study.flights import make_flight
+from study.measure import Study, main
 from study.plan import CONFIGURATION, read_plan
 from study.verify import differing
 from tests.cli.conftest import shared_views
@@ -54,6 +60,21 @@ pairs = 3
 """
 
 
+PLACES = ("data", "work", "database")
+
+
+@dataclass
+class Counted:
+    """`aerocues.run`, which counts the combinations that it is asked for."""
+
+    run: Callable[..., Any]
+    rows: int = 0
+
+    def __call__(self, dataset: Any, combinations: list[str], *rest: Any, **named: Any) -> Any:
+        self.rows += len(combinations)
+        return self.run(dataset, combinations, *rest, **named)
+
+
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a measured study of two rounds."""
@@ -62,7 +83,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (folder / "tiny.toml").write_text(TINY)
         shutil.copytree(shared_views(tmp_path_factory), folder / "data" / "photos")
         assert main([*arguments(folder), "--budget", "0.001s"]) == 3
-        assert main(arguments(folder)) == 0
+        assert main(arguments(folder)) == 3  # two parts cannot be measured here
 
     return made_once(tmp_path_factory, "tiny-study", make)[0]
 
@@ -99,11 +120,12 @@ def test_a_finished_study_goes_on_from_its_database_alone(measured: Path, tmp_pa
     shutil.copytree(measured / "database", tmp_path / "database")
     shutil.copytree(measured / "data", tmp_path / "data")
     (tmp_path / "tiny.toml").write_text(TINY)
-    assert main(arguments(tmp_path)) == 0
+    assert main([*arguments(tmp_path), "--only", "views"]) == 0
     assert not (tmp_path / "work").exists()
     more = TINY.replace('"ORB-ORB-HAM-FLANN"', '"ORB-ORB-HAM-*"')
     (tmp_path / "tiny.toml").write_text(more)
-    assert main(arguments(tmp_path)) == 0
+    assert main([*arguments(tmp_path), "--only", "views"]) == 0
+    assert aerocues.Study(tmp_path / "database").parts()["covered"].to_list() == [9]
     steps = aerocues.Results(tmp_path / "database" / "views").settings["study"]["steps"]
     assert {name: step["rows"] for name, step in steps.items()} == {"first": 6, "second": 3}
 
@@ -123,12 +145,62 @@ def test_a_row_that_differs_is_found(measured: Path) -> None:
     assert len(differing(rows, other)) == 1
 
 
-def test_measured_again_it_is_identical(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([*arguments(measured), "--verify"]) == 0
+def test_measured_again_it_is_identical(
+    measured: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shutil.copytree(measured, tmp_path, dirs_exist_ok=True)
+    words = [*arguments(tmp_path), "--only", "views"]
+    assert main([*words, "--verify"]) == 0
     assert "1 row measured again, 1 identical" in capsys.readouterr().out
-    parts = aerocues.Study(measured / "database").parts()
+    parts = aerocues.Study(tmp_path / "database").parts()
     assert parts.select("again", "identical").row(0) == (1, 1)
     assert parts["title"].to_list() == ["views of one picture"]
+    assert {folder.name for folder in (tmp_path / "work").iterdir()} == {"views", "flights"}
+
+    counted = Counted(aerocues.run)
+    monkeypatch.setattr(aerocues, "run", counted)
+    assert main([*words, "--verify"]) == 0
+    assert counted.rows == 1
+
+    study = Study(read_plan(tmp_path / "tiny.toml"), *(tmp_path / p for p in PLACES))
+    [step, *_] = study.plan.of(["views"])
+    study.store(step, 0.0, 0, finished=True)
+    assert study.facts("views")["verified"] == {"again": 1, "identical": 1}
+    shutil.rmtree(tmp_path / "work" / "views")
+    more = [*words[2:], "--configuration", str(tmp_path / "more.toml")]
+    (tmp_path / "more.toml").write_text(TINY.replace("HAM-FLANN", "HAM-EXACT"))
+    assert main(more) == 0
+    assert "verified" not in study.facts("views")
+
+
+def test_an_interruption_stores_what_there_is(
+    measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(measured / "data", tmp_path / "data")
+    (tmp_path / "tiny.toml").write_text(TINY)
+    run = aerocues.run
+
+    def interrupted(*terms: Any, **named: Any) -> None:
+        run(*terms, **named)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(aerocues, "run", interrupted)
+    assert main([*arguments(tmp_path), "--only", "views"]) == 128 + signal.SIGTERM
+    parts = aerocues.Study(tmp_path / "database").parts()
+    assert parts.select("rows", "covered").row(0) == (6, 6)
+
+
+def test_an_interrupted_copy_is_made_again(measured: Path, tmp_path: Path) -> None:
+    (tmp_path / "photos" / "inner").mkdir(parents=True)
+    (tmp_path / "photos" / "a.png").write_bytes(b"all of it")
+    (tmp_path / "flight").mkdir()
+    (tmp_path / "flight" / "a.png.part").write_bytes(b"all")
+    make_flight({"merge": ["photos"]}, tmp_path / "flight", tmp_path)
+    [only] = (tmp_path / "flight").iterdir()
+    assert only.read_bytes() == b"all of it"
 
 
 def test_the_configuration_of_the_study_is_sound() -> None:
@@ -141,8 +213,35 @@ def test_the_configuration_of_the_study_is_sound() -> None:
     assert hours < 9
 
 
-def test_what_is_wrong_with_a_configuration_is_told(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("pairs = 3", "pears = 3"),
+        ("max_megabytes = 1", 'max_megabytes = "x"'),
+        ("{data}/nowhere", "{nope}"),
+        ("{data}/nowhere", "{data"),
+        ("seconds_per_row = 0.5", 'seconds_per_row = "x"'),
+    ],
+)
+def test_what_is_wrong_with_a_configuration_is_told(right: str, wrong: str, tmp_path: Path) -> None:
     file = tmp_path / "wrong.toml"
-    file.write_text(TINY.replace("pairs = 3", "pears = 3"))
-    with pytest.raises(ArgumentError, match="pears"):
+    file.write_text(TINY.replace(right, wrong))
+    with pytest.raises(ArgumentError):
         read_plan(file)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--engine", "dask"],
+        ["--scheduler", "tcp://x:8786"],
+        ["--engine", "dask", "--scheduler", "tcp://x:abc"],
+    ],
+)
+def test_an_engine_that_cannot_be_is_refused(words: list[str], measured: Path) -> None:
+    assert main([*arguments(measured), *words]) == 2
+
+
+def test_what_is_finished_stays_finished() -> None:
+    hashes = {step.name: step.asked() for step in read_plan().steps}
+    assert hashes["brighton-flown-tuned leaders"] == "d52aa5d96c058c780ea6aa2adb78c5df"

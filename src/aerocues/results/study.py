@@ -39,7 +39,8 @@ PARTS: tuple[Column, ...] = (
     Column("finished", "string", "", "finished steps: rounds of combinations, models"),
     Column("again", "integer", "count", "rows that were measured again to check them"),
     Column("identical", "integer", "count", "of these, rows with the same quality"),
-    Column("cpu_hours", "float", "h", "CPU time that measuring took"),
+    Column("cpu_hours", "float", "h", "CPU time of measuring the covered rows and models"),
+    Column("covered", "integer", "count", "rows and models that cpu_hours covers"),
     Column("licence", "string", "", "terms of the images"),
     Column("aerocues", "string", "", "version of aerocues"),
     Column("opencv", "string", "", "version of OpenCV"),
@@ -160,8 +161,8 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
         The results folder.
     facts : mapping
         What is told of the part, in JSON types: ``title``, ``licence``, ``cpu_hours``, and
-        ``steps``: objects by name, with ``finished`` where a step is; ``verified``: an object with
-        the numbers ``again`` and ``identical``.
+        ``steps``: objects by name, with ``finished`` where a step is, and the number ``rows`` that
+        ``cpu_hours`` covers; ``verified``: an object with the numbers ``again`` and ``identical``.
 
     Returns
     -------
@@ -208,7 +209,9 @@ def part_facts(name: str, results: Results) -> dict[str, Any]:
     """The row of a part in the table ``parts``."""
     rows, settings = results.table(), results.settings
     facts, versions = settings.get(FACTS) or {}, settings.get("versions") or {}
-    dataset = settings.get("dataset") or {}
+    dataset, steps = settings.get("dataset") or {}, facts.get("steps", {})
+    models = len(results.reconstructions())
+    made = sum(step.get("rows", 0) for step in steps.values())
     return {
         PART: name,
         "title": facts.get("title"),
@@ -220,12 +223,11 @@ def part_facts(name: str, results: Results) -> dict[str, Any]:
         "pairs": rows["pair"].n_unique(),
         "rows": len(rows),
         "ok": int((rows["status"] == "ok").sum()),
-        "models": len(results.reconstructions()),
-        "finished": ", ".join(
-            name for name, step in facts.get("steps", {}).items() if step.get("finished")
-        ),
+        "models": models,
+        "finished": ", ".join(name for name, step in steps.items() if step.get("finished")),
         **{name: (facts.get("verified") or {}).get(name, 0) for name in ("again", "identical")},
         "cpu_hours": facts.get("cpu_hours"),
+        "covered": min(made, len(rows) + models),
         "licence": facts.get("licence"),
         "aerocues": versions.get("aerocues"),
         "opencv": versions.get("opencv"),
