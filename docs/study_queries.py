@@ -13,9 +13,10 @@ BINARY = """SELECT detector, descriptor, matcher, COUNT(*) AS pairs,
 AVG(COALESCE(coverage, 0)) AS coverage,
 MEDIAN((detect_seconds_1_cpu + detect_seconds_2_cpu + describe_seconds_1_cpu
 + describe_seconds_2_cpu) / 2) AS seconds, MEDIAN(match_seconds_cpu) AS to_match
-FROM results WHERE norm = 'HAM' AND preset = 'tuned'
-GROUP BY detector, descriptor, matcher HAVING seconds < 0.05
-ORDER BY pairs DESC, coverage DESC LIMIT 5"""
+FROM results WHERE norm = 'HAM' AND reference = 'flow' AND part IN
+('brighton-flown-tuned', 'suburb-nadir-tuned', 'suburb-oblique-tuned')
+GROUP BY detector, descriptor, matcher HAVING seconds < 0.05 AND COUNT(DISTINCT part) = 3
+ORDER BY coverage DESC LIMIT 5"""
 FLANN = """SELECT norm, matcher, COUNT(*) AS pairs, AVG(match_seconds_cpu) AS seconds,
 AVG(COALESCE("ref_matches@3", 0)) AS right_matches FROM results
 WHERE part = 'brighton-flann-8000' GROUP BY norm, matcher ORDER BY norm, matcher"""
@@ -29,7 +30,7 @@ AVG(CASE WHEN reference_turn > 60 THEN COALESCE("ref_matches@3", 0) END) AS turn
 FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK' AND matcher = 'BF'
 GROUP BY detector ORDER BY detector"""
 QUERIES: dict[str, tuple[str, tuple[str, ...]]] = {
-    "binary": (BINARY, ()),
+    "binary": (BINARY, ("brighton-flown-tuned", "suburb-nadir-tuned", "suburb-oblique-tuned")),
     "flann": (FLANN, ("brighton-flann-8000",)),
     "oblique": (OBLIQUE, ("suburb-nadir-tuned", "suburb-oblique-tuned")),
     "turned": (TURNED, ("brighton-flown-tuned",)),

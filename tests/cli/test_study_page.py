@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import polars as pl
 import pytest
 
 import aerocues
+from aerocues.errors import AerocuesError
 from aerocues.results.packing import folder_content
 from aerocues.results.plan_table import plan_of
 from aerocues.results.schema import empty_row, polars_schema
 from aerocues.results.study import add_part
-from docs.study import DATABASE, NOT_YET, PAGES, Findings, rendered
+from docs.study import PAGES, Findings, rendered
+from docs.study_parts import DATABASE, NOT_YET
 from docs.study_queries import QUERIES, console
 from tests.cli.conftest import Call
 from tests.made_once import made_once
@@ -52,6 +55,7 @@ def said(stand_in: Path) -> Findings:
     return Findings(stand_in)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_numbers_follow_the_database(page: str, findings: Findings) -> None:
     text = (REPOSITORY / page).read_text(encoding="utf-8")
@@ -70,13 +74,21 @@ def test_each_statement_is_made_of_rows_that_are_there(
 ) -> None:
     filled = getattr(said, name.replace("-", "_"))()
     without_rows = getattr(Findings(tmp_path), name.replace("-", "_"))()
-    assert "nan" not in filled.lower()
+    assert not re.search(r"\bnan\b", filled.lower())
     if name == "dictionary":
         assert filled == without_rows
         return
     assert NOT_YET in without_rows
     if name not in NEED_MORE:
         assert filled != without_rows
+
+
+def test_a_broken_database_is_not_an_empty_one(stand_in: Path, tmp_path: Path) -> None:
+    assert Findings(tmp_path).study is None
+    shutil.copytree(stand_in, tmp_path, dirs_exist_ok=True)
+    (tmp_path / NAMES[0] / "run.json").write_text("{")
+    with pytest.raises(AerocuesError):
+        Findings(tmp_path).measured()
 
 
 def test_who_suffers_most_is_told(tmp_path: Path) -> None:

@@ -1,0 +1,225 @@
+"""What the study answers to a practitioner, as Markdown; see docs/study.py."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import polars as pl
+
+import aerocues
+from aerocues.phrases import count, likelihood
+from aerocues.results.timing import DISTURBED
+from docs.study_parts import MOST_NAMED, NOT_YET, Parts
+from docs.study_queries import console, markdown
+
+CONDITIONS: tuple[tuple[str, str, str], ...] = (
+    ("nadir, strips there and back (turned by 180°)", "brighton-flown-tuned", "reconstruction"),
+    ("oblique", "suburb-oblique-tuned", "reconstruction"),
+    ("nadir, all images with the same heading", "suburb-nadir-tuned", "reconstruction"),
+    ("oblique, there and back", "suburb-natural-tuned", "reconstruction"),
+    ("low texture (fields), nadir", "fields-nadir-tuned", "reconstruction"),
+    ("low texture (fields), oblique", "fields-oblique-tuned", "reconstruction"),
+    ("low texture, oblique, there and back", "fields-natural-tuned", "reconstruction"),
+    ("different kinds of image (Oxford)", "oxford-tuned", "accuracy"),
+    ("boards: the first of these flights, by speed", "brighton-flown-tuned", "speed"),
+    ("neighbouring images of five projects", "uav-tuned", "reconstruction"),
+)
+"""What a practitioner flies, the part of the study that shows it, and the objective.
+
+The most telling comes first, as in study.toml: the README tells of the first that is measured.
+"""
+
+
+KINDS = {"HAM": "strings of bits", "L2": "numbers"}
+"""Descriptors by the norm under which they are compared."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a part says about a condition: the choice, and the test that `score` makes."""
+
+    choice: aerocues.Choice
+    ranking: aerocues.Ranking
+
+    @property
+    def probability(self) -> str:
+        """That the choice is the best; nothing with a single pair."""
+        first = self.choice.ranked["probability"][0]
+        return "" if first is None else likelihood(float(first))
+
+    @property
+    def tested(self) -> bool:
+        """Whether the test is about the choice: an objective may weigh other criteria."""
+        return self.ranking.against == self.choice.best
+
+    @property
+    def not_worse(self) -> list[str]:
+        """The others that are not significantly worse (p >= .05)."""
+        compared = set(self.choice.ranked["combination"])
+        return [name for name in self.ranking.indistinguishable() if name in compared]
+
+    def sentence(self, title: str) -> str:
+        """What it says of a condition, with the interval and how sure it is."""
+        best, others = self.choice.best, len(self.choice.ranked) - 1
+        row = self.ranking.frame("combination").row(0, named=True)
+        told = (
+            f"right matches cover {row['score']:.2f} of the image (95 % interval "
+            f"{row['score_low']:.2f} to {row['score_high']:.2f}), counting how surely pairs are "
+            f"linked, over {count(self.choice.pairs, 'pair')}; the probability that it is the best "
+            f"is {self.probability}"
+        )
+        title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
+        if 2 * worse >= others:
+            return (
+                f"**{title}: nothing is decided.** {best} has the highest score ({told}), but "
+                f"{worse:,} of the {others:,} others are not significantly worse (p ≥ .05)."
+            )
+        named = f": {', '.join(self.not_worse[:MOST_NAMED])}" if worse else ""
+        more = f" and {worse - MOST_NAMED} more" if worse > MOST_NAMED else ""
+        place = "has the highest score" if worse else "is the best"
+        return (
+            f"**{title}: {best}** {place} of {others + 1:,} combinations: {told}. Not "
+            f"significantly worse (p ≥ .05): {worse or 'none'} of the {others:,} others{named}{more}."
+        )
+
+
+@dataclass(frozen=True)
+class Answers(Parts):
+    """Statements for the first screens."""
+
+    def measured(self) -> str:
+        """How much there is."""
+        if self.study is None:
+            return NOT_YET
+        parts = self.study.parts()
+        rows, models = int(parts["rows"].sum()), int(parts["models"].sum())
+        failed = rows - int(parts["ok"].sum())
+        most = parts.select(pl.max("combinations")).item()
+        table = self.study.table()
+        timed = table.filter(pl.col("timing") == "exclusive")
+        shared = int((timed["wall_over_cpu"] > DISTURBED).sum())
+        times = (
+            f"{count(len(timed), 'row')} timed alone, {shared:,} of which had to share the core "
+            "with other programs all the same; others are scaled by these."
+            if len(timed)
+            else "No row was timed alone yet: times are those of a busy machine."
+        )
+        return (
+            f"So far: {count(rows, 'row')} in {count(len(parts), 'part')}, of which "
+            f"{failed:,} failed or are not better than chance, and {count(models, 'model')}; up to "
+            f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours for "
+            f"{parts['covered'].sum():,} of these rows and models (of the others none are known). "
+            f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
+            f"{parts['identical'].sum():,} with identical quality."
+        )
+
+    @cached_property
+    def findings(self) -> Mapping[str, Finding]:
+        """What is known of each condition of which the part was measured."""
+        found = {}
+        for title, name, aim in CONDITIONS:
+            for results in self.results([name]):
+                choice = aerocues.choose(results, aim)
+                found[title] = Finding(choice, aerocues.score(results, choice.presets[0]))
+        return found
+
+    def main_finding(self) -> str:
+        """The first condition that was measured, in a sentence with its interval."""
+        told = (finding.sentence(title) for title, finding in self.findings.items())
+        return next(told, NOT_YET)
+
+    def advice(self) -> str:
+        """What to take under each condition."""
+        lines = [("you fly", "take", "probability", "not significantly worse", "measured")]
+        for title, _, _ in CONDITIONS:
+            if (found := self.findings.get(title)) is None:
+                lines.append((title, NOT_YET, "", "", ""))
+                continue
+            others = found.not_worse if found.tested else []
+            named = ", ".join(f"`{each}`" for each in others[:MOST_NAMED])
+            more = f" and {len(others) - MOST_NAMED} more" if others[MOST_NAMED:] else ""
+            number = f"{len(others)}: {named}{more}" if others else "none"
+            choice = found.choice
+            on = f"{len(choice.ranked)} combinations, {choice.pairs} pairs"
+            worse = number if found.tested else "not tested"
+            lines.append((title, f"`{choice.best}`", found.probability, worse, on))
+        return markdown(lines)
+
+    def changes(self) -> str:
+        """How many conditions have a best of their own."""
+        if len(self.findings) < 2:
+            return NOT_YET
+        bests = dict.fromkeys(each.choice.best for each in self.findings.values())
+        named = ", ".join(f"`{best}`" for best in bests)
+        return (
+            f"The {len(self.findings)} measured conditions have "
+            f"{count(len(bests), 'combination', 'different combinations')}: {named}."
+        )
+
+    def suffers(self, query: str, before: str, after: str) -> str:
+        """Which detector loses most of its right matches, and all others."""
+        found = self.table(query)
+        if not found.is_empty():
+            kept = (pl.col(after) / pl.col(before)).alias("kept")
+            found = found.drop_nulls().filter(pl.col(before) > 0).with_columns(kept).sort("kept")
+        if found.is_empty():
+            return f"{console(query)}\n\n{NOT_YET}"
+        least, most = found.row(0, named=True), found.row(-1, named=True)
+        told = (
+            f"{least['detector']} suffers most: it keeps {least['kept']:.0%} of its right matches "
+            f"({least[before]:.0f} a pair become {least[after]:.0f}); {most['detector']} keeps "
+            f"{most['kept']:.0%}."
+        )
+        lines = [("detector, with BRISK", before.replace("_", " "), after, "kept")]
+        for row in found.iter_rows(named=True):
+            figures = (f"{row[before]:.0f}", f"{row[after]:.0f}", f"{row['kept']:.0%}")
+            lines.append((row["detector"], *figures))
+        return f"{console(query)}\n\n{told}\n\n{markdown(lines)}"
+
+    def oblique(self) -> str:
+        """Detectors on an oblique layer against a nadir one."""
+        return self.suffers("oblique", "nadir", "oblique")
+
+    def turned(self) -> str:
+        """Detectors on turned pairs against others."""
+        return self.suffers("turned", "same_heading", "turned")
+
+    def binary(self) -> str:
+        """The best binary combinations under 50 ms."""
+        found = self.table("binary")
+        if found.is_empty():
+            return f"{console('binary')}\n\n{NOT_YET}"
+        lines: list[tuple[str, ...]] = [
+            ("combination", "pairs", "coverage", "ms an image", "ms to match a pair")
+        ]
+        for row in found.iter_rows(named=True):
+            name = f"`{row['detector']}-{row['descriptor']}-HAM-{row['matcher']}`"
+            times = (f"{row[each] * 1e3:.0f}" for each in ("seconds", "to_match"))
+            lines.append((name, str(row["pairs"]), f"{row['coverage']:.3f}", *times))
+        return f"{console('binary')}\n\n{markdown(lines)}"
+
+    def flann(self) -> str:
+        """Brute force against FLANN at 8,000 keypoints."""
+        found = self.table("flann")
+        if found.is_empty():
+            return f"{console('flann')}\n\n{NOT_YET}"
+        lines = [("descriptors", "matcher", "rows", "CPU s to match", "right matches a pair")]
+        told = []
+        for row in found.iter_rows(named=True):
+            kind = KINDS[row["norm"]]
+            figures = (f"{row['seconds']:.2f}", f"{row['right_matches']:.0f}")
+            lines.append((kind, row["matcher"], str(row["pairs"]), *figures))
+        for norm, kind in KINDS.items():
+            own = {row["matcher"]: row for row in found.filter(norm=norm).iter_rows(named=True)}
+            if {"BF", "FLANN"} <= own.keys() and own["BF"]["right_matches"] > 0:
+                share, right = (
+                    own["FLANN"][name] / own["BF"][name] for name in ("seconds", "right_matches")
+                )
+                verdict = "pays" if share < 1 else "does not pay"
+                told.append(
+                    f"For {kind}, FLANN takes {share:.2f} of the time of brute force and finds "
+                    f"{right:.0%} of its right matches: it {verdict}."
+                )
+        return f"{console('flann')}\n\n{' '.join(told)}\n\n{markdown(lines)}"

@@ -1,0 +1,149 @@
+"""What the study's rows say about methods and measuring, as Markdown; see docs/study.py."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+import aerocues
+from aerocues.errors import ScoreError
+from aerocues.results.study_dictionary import dictionary
+from docs.study_parts import MOST_NAMED, NOT_YET, Parts
+from docs.study_queries import described, in_common, markdown, rank_correlation
+
+
+@dataclass(frozen=True)
+class Tables(Parts):
+    """Statements about criteria, presets and sets of methods, and the data card."""
+
+    def criteria(self) -> str:
+        """What the choice of criteria and counting failures change in the rankings."""
+        ways = {"inliers": "inliers", "thesis": "thesis", "failures left out": None}
+        heads = ("part", "best: default", *(f"best: {way}" for way in ways))
+        lines: list[tuple[str, ...]] = [(*heads, *(f"agreement: {way}" for way in ways))]
+        for name in (name for name in self.names if name.endswith("-tuned")):
+            [found] = self.results([name])
+            usual = aerocues.score(found, "default", resamples=2).frame("combination")
+            others = [
+                aerocues.score(found, preset, resamples=2)
+                if preset
+                else aerocues.score(found, "default", failures="omit", resamples=2)
+                for preset in ways.values()
+            ]
+            frames = [each.frame("combination") for each in others]
+            bests = [f"`{frame['combination'][0]}`" for frame in (usual, *frames)]
+            agreement = [rank_correlation(usual, frame) for frame in frames]
+            lines.append((f"`{name}`", *bests, *agreement))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def failures(self) -> str:
+        """How the rows ended."""
+        if self.study is None:
+            return NOT_YET
+        rows = self.study.table()
+        counts = rows.group_by("status").len().sort("len", "status", descending=[True, False])
+        lines = [("status", "rows", "share", "most often with the detector")]
+        for status, number in counts.iter_rows():
+            if status != "ok":
+                most = rows.filter(pl.col("status") == status)["detector"].mode().sort()[0]
+                lines.append((f"`{status}`", f"{number:,}", f"{number / len(rows):.1%}", most))
+        return markdown(lines) if lines[1:] else "No row failed."
+
+    def predictors(self) -> str:
+        """Which figures of pairs predict how many images a model holds."""
+        lines = [("part", "models", "figures of pairs that predict registered images best")]
+        for name in self.names:
+            [found] = self.results([name])
+            if found.reconstructions().is_empty():
+                continue
+            try:
+                related = aerocues.relate_outcomes(found)
+            except ScoreError:  # too few models, or nothing varies
+                continue
+            if "registered_images" not in related.outcomes:
+                continue
+            own = related.spearman[:, related.outcomes.index("registered_images")]
+            order = [place for place in np.argsort(-np.abs(own)) if np.isfinite(own[place])]
+            told = ", ".join(f"`{related.features[p]}` {own[p]:.2f}" for p in order[:MOST_NAMED])
+            lines.append((f"`{name}`", str(len(related.combinations)), told))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def presets(self) -> str:
+        """What `tuned` gains over the parameters of the thesis."""
+        right, share = "right matches a pair", "their share of all"
+        heads = (f"{right}: thesis", "tuned", f"{share}: thesis", "tuned")
+        lines: list[tuple[str, ...]] = [("images", "combinations", *heads)]
+        for images in ("synthetic", "oxford", "uav"):
+            names = [f"{images}-thesis", f"{images}-tuned"]
+            if set(names) <= set(self.names):
+                thesis, tuned = (each.table() for each in self.results(names))
+                lines.append((images, *in_common(thesis, tuned)))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def learned(self) -> str:
+        """The best of the learned set beside SIFT, by part."""
+        return self._ranked([name for name in self.names if name.endswith("-learned")])
+
+    def extra(self) -> str:
+        """The best of the extra set."""
+        return self._ranked([name for name in self.names if name.endswith("-extra")])
+
+    def _ranked(self, names: Sequence[str]) -> str:
+        lines = [("part", "combination", "CUES (95 %)", "ranks (95 %)")]
+        for name in names:
+            [found] = self.results([name])
+            for row in aerocues.score(found).frame("combination").head(5).iter_rows(named=True):
+                score = f"{row['score']:.2f} ({row['score_low']:.2f} to {row['score_high']:.2f})"
+                ranks = f"{row['rank_low']} to {row['rank_high']}"
+                lines.append((f"`{name}`", f"`{row['combination']}`", score, ranks))
+        return markdown(lines) if lines[1:] else NOT_YET
+
+    def pixels(self) -> str:
+        """Whether the answer at 1,000 pixels holds at 4,000."""
+        found = self.results(["mini-1000", "mini-4000"])
+        if len(found) < 2:
+            return NOT_YET
+        small, large = (aerocues.score(each, resamples=2).frame("combination") for each in found)
+        times = [each.table().select(pl.median("total_seconds")).item() for each in found]
+        agree = rank_correlation(small, large)
+        return (
+            f"Ranks at 1,000 and 4,000 pixels have a correlation of {agree} "
+            f"({len(small)} combinations). The best is `{small['combination'][0]}` at 1,000 and "
+            f"`{large['combination'][0]}` at 4,000; an image and a pair take {times[0]:.2f} s and "
+            f"{times[1]:.2f} s in the median."
+        )
+
+    def parts(self) -> str:
+        """The parts with machines, versions and licences."""
+        if self.study is None:
+            return NOT_YET
+        texts = ("part", "what it is", "licence of the images", "preset")
+        lines: list[tuple[str, ...]] = [
+            (*texts, "combinations", "pairs", "rows", "models", "finished steps", "CPU h")
+        ]
+        for row in self.study.parts().iter_rows(named=True):
+            named = [row[name] or "" for name in ("title", "licence", "preset")]
+            counts = [f"{row[name]:,}" for name in ("combinations", "pairs", "rows", "models")]
+            hours = f"{row['cpu_hours']:.2f}"
+            lines.append((f"`{row['part']}`", *named, *counts, row["finished"], hours))
+        return markdown(lines)
+
+    def versions(self) -> str:
+        """The machines and versions behind the rows."""
+        if self.study is None:
+            return NOT_YET
+        parts = self.study.parts()
+        columns = {"aerocues": "aerocues", "opencv": "OpenCV", "machine": "machine"}
+        return "\n".join(
+            f"- {label}: {', '.join(parts[name].drop_nulls().unique().sort())}"
+            for name, label in columns.items()
+        )
+
+    def dictionary(self) -> str:
+        """Every column of every table."""
+        head = ("column", "type", "unit", "definition")
+        tables = {name: markdown([head, *described(own)]) for name, own in dictionary().items()}
+        return "\n\n".join(f"### {name}\n\n{table}" for name, table in tables.items())
