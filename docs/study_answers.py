@@ -73,7 +73,7 @@ class Finding:
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
         if 2 * worse >= others:
             return (
-                f"**{title}: nothing is decided.** {best} has the highest score ({told}), but "
+                f"**{title}: nothing is decided.** {best} has the highest score: {told}. But "
                 f"{worse:,} of the {others:,} others are not significantly worse (p ≥ .05)."
             )
         named = f": {', '.join(self.not_worse[:MOST_NAMED])}" if worse else ""
@@ -81,7 +81,8 @@ class Finding:
         place = "has the highest score" if worse else "is the best"
         return (
             f"**{title}: {best}** {place} of {others + 1:,} combinations: {told}. Not "
-            f"significantly worse (p ≥ .05): {worse or 'none'} of the {others:,} others{named}{more}."
+            f"significantly worse (p ≥ .05): {worse or 'none'} of the {others:,} others"
+            f"{named}{more}."
         )
 
 

@@ -55,6 +55,8 @@ def test_it_answers_queries(database: Path, call: Call) -> None:
     answer = json.loads(call("study", "--sql", query, "--json").out)
     assert answer == [{"part": name, "rows": 12} for name in PARTS]
     assert call("study", "--json", "--csv", "-").code == 2
+    assert call("study", "--columns", "--sql", query).code == 2
+    assert call("study", "--pack", "study.zip", "--json").code == 2
 
 
 def test_its_columns_are_explained(call: Call) -> None:

@@ -11,6 +11,7 @@ import pytest
 import aerocues
 from aerocues.errors import StoreError
 from aerocues.results.importing import import_results
+from aerocues.results.store import Store
 from aerocues.results.study import add_part, without_places
 from aerocues.results.study_dictionary import dictionary
 from aerocues.results.study_place import study_folder
@@ -120,8 +121,21 @@ def test_what_would_become_too_large_is_not_opened(database: Path, tmp_path: Pat
     packed = aerocues.Study(database).pack(tmp_path / "study.zip")
     with zipfile.ZipFile(packed, "a") as archive:
         archive.writestr("first-part/parts/broken.parquet", b"PAR1 nothing PAR1")
-    with pytest.raises(StoreError, match="not read"):
-        aerocues.Study(packed)
+    for _ in range(2):
+        with pytest.raises(StoreError, match="not read"):
+            aerocues.Study(packed)
+
+
+def test_a_part_is_only_read(database: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AEROCUES_STUDY", str(database))
+    with pytest.raises(StoreError, match="only read"):
+        Store.create(Path("study:first-part"))
+
+
+def test_another_file_is_not_a_study(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("no archive")
+    with pytest.raises(StoreError, match="not a packed study"):
+        aerocues.Study(tmp_path / "notes.txt")
 
 
 def test_names_of_parts_are_plain(database: Path, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import typer
 
 from aerocues.cli.options import JsonOption
 from aerocues.cli.output import STANDARD_OUTPUT, write_table
+from aerocues.phrases import count
 
 if TYPE_CHECKING:
     from aerocues.results.study import Study
@@ -49,6 +50,9 @@ def study(
 
     if csv is not None and as_json:
         raise typer.BadParameter("choose one of --csv and --json")
+    shown = sql is not None or csv is not None or as_json
+    if columns + (pack is not None) + shown > 1:
+        raise typer.BadParameter("choose one of --columns, --pack and --sql (or --csv, --json)")
     if columns:
         _print_columns()
         return
@@ -56,7 +60,7 @@ def study(
     if pack is not None:
         file = found.pack(pack)
         size = f"{file.stat().st_size / 1e6:,.1f} MB"
-        sys.stderr.write(f"{len(found.names)} parts packed into {file} ({size})\n")
+        sys.stderr.write(f"{count(len(found.names), 'part')} packed into {file} ({size})\n")
         return
     target = STANDARD_OUTPUT if as_json else csv
     if sql is None and target is None:

@@ -28,6 +28,7 @@ from aerocues.reconstruction.reconstruct import open_results, reconstruct_scene
 from aerocues.reconstruction.scene import Wanted
 from aerocues.reconstruction.scene_making import baseline_alone, beside_baseline, check_scene
 from aerocues.results.measured_results import Results, as_results
+from aerocues.results.study_place import refuse_part
 from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
 
@@ -141,6 +142,8 @@ def reconstruct(
     _check_chosen(combinations, results, top, baseline=baseline)
     measured = None if results is None else as_results(results)
     scene = dataset if isinstance(dataset, Dataset) else open_as_measured(dataset, measured)
+    if measured is not None:
+        refuse_part(measured.given)
     store = None if measured is None else open_results(measured.folder, scene)
     if combinations is None and measured is not None:
         combinations = best_combinations(

@@ -77,6 +77,7 @@ class Results:
 
     def __init__(self, folder: str | Path) -> None:
         self._path = place = place_of_results(folder)
+        self._given = folder
         if place.is_file():
             from aerocues.results.packing import unpack
 
@@ -110,6 +111,11 @@ class Results:
     def folder(self) -> Path:
         """The opened folder or packed file."""
         return self._path
+
+    @property
+    def given(self) -> str | Path:
+        """What was opened: the folder or file, or ``study:NAME``."""
+        return self._given
 
     @property
     def settings(self) -> dict[str, Any]:

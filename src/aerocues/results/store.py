@@ -64,6 +64,9 @@ class Store(ReconstructionStore):
         StoreError
             If the folder cannot be created or written, or has other content.
         """
+        from aerocues.results.study_place import refuse_part
+
+        refuse_part(folder)
         if folder.exists() and not folder.is_dir():
             raise StoreError(f"{folder} is a file; give the name of a folder as `output`")
         if folder.is_dir() and not (folder / RUN).exists() and any(folder.iterdir()):

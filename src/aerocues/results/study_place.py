@@ -5,10 +5,13 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import tempfile
+import zipfile
+from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 
-from aerocues.errors import StoreError
+from aerocues.errors import AerocuesError, StoreError
 from aerocues.results.expanded_size import why_not_decoded
 from aerocues.results.store import RUN
 from aerocues.scratch_folders import cache_folder
@@ -46,9 +49,10 @@ def study_folder(place: str | Path | None = None) -> Path:
             f"{VARIABLE}, or change to the checkout with {IN_CHECKOUT}"
         )
     if str(asked).startswith(WEB):
-        asked = _downloaded(str(asked))
-    path = Path(asked).expanduser()
-    folder = _unpacked(path) if path.is_file() else path
+        folder = _of_download(_downloaded(str(asked)))
+    else:
+        path = Path(asked).expanduser()
+        folder = _unpacked(path) if path.is_file() else path
     if not part_names(folder):
         raise StoreError(f"{asked} is not a study: no folder in it holds results; give another one")
     return folder
@@ -77,6 +81,14 @@ def place_of_results(place: str | Path) -> Path:
     return part_folder(study_folder(), text.removeprefix(MARK))
 
 
+def refuse_part(place: str | Path) -> None:
+    """StoreError if a place to write to is a part of the study, such as ``study:NAME``."""
+    if str(place).startswith(MARK):
+        raise StoreError(
+            f"{place} is a part of the study, which is only read; give a folder of your own"
+        )
+
+
 def _of_checkout(folder: Path) -> Path | None:
     """The database of the checkout that holds a folder."""
     found = (each / IN_CHECKOUT for each in (folder, *folder.parents))
@@ -95,18 +107,49 @@ def _downloaded(address: str) -> Path:
     return file
 
 
+def _of_download(file: Path) -> Path:
+    """The folder of a downloaded file, which is removed where it is refused: it may be damaged."""
+    try:
+        return _unpacked(file)
+    except AerocuesError:
+        file.unlink(missing_ok=True)
+        raise
+
+
 def _unpacked(file: Path) -> Path:
     """The folder of a packed study, in the cache under the hash of its content."""
+    digest = hashlib.sha256(file.read_bytes()).hexdigest()[:DIGITS]
+    cache = cache_folder("studies")
+    folder = cache / f"{digest}-whole"
+    if folder.is_dir():
+        return folder
+    if not zipfile.is_zipfile(file):
+        raise StoreError(f"{file} is not a packed study (a zip file); give another place")
+    cache.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=cache, prefix=".unpacking-") as name:
+        fresh = Path(name) / "study"
+        fresh.mkdir()
+        _unpack(file, fresh)
+        # Renamed when all of it is checked: what is in the cache is whole.
+        with suppress(FileExistsError):
+            _rename(fresh, folder)
+    return folder
+
+
+def _unpack(file: Path, folder: Path) -> None:
     from aerocues.datasets.unpacking import unpack_sequences
 
-    digest = hashlib.sha256(file.read_bytes()).hexdigest()[:DIGITS]
-    folder = cache_folder("studies") / digest
-    if part_names(folder):
-        return folder
-    folder.mkdir(parents=True, exist_ok=True)
     unpack_sequences(file, folder, RUN, "study")
-    for table in folder.rglob("*.parquet"):
+    for table in sorted(folder.rglob("*.parquet")):
         if problem := why_not_decoded(table.read_bytes()):
-            (folder / table.relative_to(folder).parts[0] / RUN).unlink(missing_ok=True)
             raise StoreError(f"{file} is not read: in {table.name} {problem}; ask for it once more")
-    return folder
+
+
+def _rename(fresh: Path, folder: Path) -> None:
+    """Rename a folder; FileExistsError if another process was faster."""
+    try:
+        fresh.rename(folder)
+    except OSError as error:
+        if folder.is_dir():
+            raise FileExistsError from error
+        raise
