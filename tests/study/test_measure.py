@@ -165,7 +165,8 @@ def test_measured_again_it_is_identical(
     assert main([*words, "--verify"]) == 0
     assert counted.rows == 1
 
-    study = Study(read_plan(tmp_path / "tiny.toml"), *(tmp_path / p for p in PLACES))
+    data, work, database = (tmp_path / place for place in PLACES)
+    study = Study(read_plan(tmp_path / "tiny.toml"), data, work, database)
     [step, *_] = study.plan.of(["views"])
     study.store(step, 0.0, 0, finished=True)
     assert study.facts("views")["verified"] == {"again": 1, "identical": 1}
