@@ -42,6 +42,8 @@ class Finding:
 
     choice: aerocues.Choice
     ranking: aerocues.Ranking
+    models: int
+    """Models that count in the ranking, but not in the choice."""
 
     @property
     def probability(self) -> str:
@@ -64,12 +66,19 @@ class Finding:
         """What it says of a condition, with the interval and how sure it is."""
         best, others = self.choice.best, len(self.choice.ranked) - 1
         row = self.ranking.frame("combination").row(0, named=True)
-        told = (
-            f"right matches cover {row['score']:.2f} of the image (95 % interval "
-            f"{row['score_low']:.2f} to {row['score_high']:.2f}), counting how surely pairs are "
-            f"linked, over {count(self.choice.pairs, 'pair')}; the probability that it is the best "
-            f"is {self.probability}"
-        )
+        interval = f"(95 % interval {row['score_low']:.2f} to {row['score_high']:.2f})"
+        pairs, score = count(self.choice.pairs, "pair"), f"{row['score']:.2f}"
+        if self.models:
+            told = (
+                f"{score} {interval} by {pairs} and {count(self.models, 'model')} of all images; "
+                f"by the pairs alone, the probability that it is the best is {self.probability}"
+            )
+        else:
+            told = (
+                f"right matches cover {score} of the image {interval}, counting how surely pairs "
+                f"are linked, over {pairs}; the probability that it is the best is "
+                f"{self.probability}"
+            )
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
         if 2 * worse >= others:
             return (
@@ -123,7 +132,8 @@ class Answers(Parts):
         for title, name, aim in CONDITIONS:
             for results in self.results([name]):
                 choice = aerocues.choose(results, aim)
-                found[title] = Finding(choice, aerocues.score(results, choice.presets[0]))
+                ranking = aerocues.score(results, choice.presets[0])
+                found[title] = Finding(choice, ranking, len(results.reconstructions()))
         return found
 
     def main_finding(self) -> str:

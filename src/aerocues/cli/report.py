@@ -70,7 +70,7 @@ def report(
     max_megabytes: Annotated[
         float,
         typer.Option(
-            min=5,
+            min=2,
             metavar="MB",
             help="Size limit of the page: pictures and clouds beyond it are left out.",
         ),

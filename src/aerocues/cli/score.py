@@ -34,7 +34,6 @@ from aerocues.cli.scoring import (
 )
 from aerocues.defaults import RESAMPLES, TOP_K
 from aerocues.errors import ArgumentError
-from aerocues.scoring.settings import names_of
 
 if TYPE_CHECKING:
     from aerocues.scoring.ranking import Ranking
@@ -127,6 +126,8 @@ def score(
         _for_purpose(folder, objective, {**limits.given(), **drawn}, targets, top, as_json=as_json)
         return
     if columns is not None:
+        from aerocues.scoring.settings import names_of
+
         _check_columns(names_of(columns), latex or markdown)
     import aerocues
     from aerocues.cli.interruption import interruptible
@@ -213,6 +214,8 @@ def _for_purpose(
 def _write(ranking: Ranking, targets: dict[str, str | None], top: int, columns: str | None) -> None:
     frame = ranking.frame("combination")
     criteria = ranking.scores.table.criterion_names
+    from aerocues.scoring.settings import names_of
+
     names = names_of(columns) if columns else [*PRINTED, "success_rate", *criteria]
     for name in names:
         check_choice("columns", name, frame.columns)

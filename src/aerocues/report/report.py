@@ -140,7 +140,7 @@ def write_report(
         If the results cannot be scored or the file cannot be written.
     """
     check_whole("pictures", pictures, 0)
-    check_number("max_megabytes", max_megabytes, 5)
+    check_number("max_megabytes", max_megabytes, 2)
     entries = report_entries(
         listed(results),
         preset,
