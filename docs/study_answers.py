@@ -42,8 +42,8 @@ class Finding:
 
     choice: aerocues.Choice
     ranking: aerocues.Ranking
-    models: int
-    """Models that count in the ranking, but not in the choice."""
+    models: bool
+    """Whether the ranking, but not the choice, counts models that were built."""
 
     @property
     def probability(self) -> str:
@@ -70,8 +70,8 @@ class Finding:
         pairs, score = count(self.choice.pairs, "pair"), f"{row['score']:.2f}"
         if self.models:
             told = (
-                f"{score} {interval} by {pairs} and {count(self.models, 'model')} of all images; "
-                f"by the pairs alone, the probability that it is the best is {self.probability}"
+                f"{score} {interval} by {pairs} and by the models that were built; by the pairs "
+                f"alone, the probability that it is the best is {self.probability}"
             )
         else:
             told = (
@@ -118,9 +118,10 @@ class Answers(Parts):
         )
         return (
             f"So far: {count(rows, 'row')} in {count(len(parts), 'part')}, of which "
-            f"{failed:,} failed or are not better than chance, and {count(models, 'model')}; up to "
-            f"{most} of 340 combinations a part; {parts['cpu_hours'].sum():.2f} CPU hours for "
-            f"{parts['covered'].sum():,} of these rows and models (of the others none are known). "
+            f"{failed:,} failed or are not better than chance, and "
+            f"{count(models, 'reconstruction')}; up to {most} of 340 combinations a part; "
+            f"{parts['cpu_hours'].sum():.2f} CPU hours for {parts['covered'].sum():,} of these "
+            "(of the others none are known). "
             f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
             f"{parts['identical'].sum():,} with identical quality."
         )
@@ -133,7 +134,7 @@ class Answers(Parts):
             for results in self.results([name]):
                 choice = aerocues.choose(results, aim)
                 ranking = aerocues.score(results, choice.presets[0])
-                found[title] = Finding(choice, ranking, len(results.reconstructions()))
+                found[title] = Finding(choice, ranking, not results.reconstructions().is_empty())
         return found
 
     def main_finding(self) -> str:

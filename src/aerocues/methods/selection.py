@@ -175,7 +175,7 @@ def _require_sets(sets: Iterable[str], can_run: Iterable[Combination], methods: 
         raise SelectionError(f"nothing of {WITH}{name} can be used here: {reason}")
 
 
-def _why_unusable(name: str, methods: Methods) -> str | None:
+def _why_unusable(name: str, methods: Methods) -> str:
     """Why no method of a set can be used: one is not there, or nothing that is there fits it."""
     tables: tuple[Mapping[str, Any], ...]
     tables = (methods.detectors, methods.descriptors, methods.matchers)
@@ -190,7 +190,7 @@ def _why_unusable(name: str, methods: Methods) -> str | None:
     reasons = (
         why_unavailable(each, methods) or why_incompatible(each, methods) for each in with_one
     )
-    return next(filter(None, reasons), None)
+    return next(filter(None, reasons), "it fits no other method")
 
 
 def _by_component(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 
@@ -115,7 +116,7 @@ class RaceProgress:
     def _refuse_late(self, stage: str, to_go: float) -> None:
         spent = self._clock() - self._began
         if self._strict and spent + to_go > LATEST * self._budget:
-            late = spoken_seconds(spent + to_go)
+            late = spoken_seconds(math.ceil(spent + to_go))
             why = f"{stage} is not over before {late}, which leaves too little for the race"
             raise budget_too_small(self._budget, spent + to_go, why)
 
