@@ -93,7 +93,9 @@ def _serve() -> None:
         process = os.fork()
         if process == 0:
             _become(**json.loads(line))
-        print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), flush=True)
+        code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+        sys.stdout.write(f"{code}\n")
+        sys.stdout.flush()
 
 
 def _become(

@@ -347,9 +347,7 @@ RUN = [page for page in PAGES if blocks(page) and page.name not in NOT_RUN]
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", RUN, ids=identify)
-def test_the_page_runs_from_top_to_bottom(
-    page: Path, tmp_path: Path, preloaded: Preloaded
-) -> None:
+def test_the_page_runs_from_top_to_bottom(page: Path, tmp_path: Path, preloaded: Preloaded) -> None:
     write_stand_in_data(tmp_path)
     for block in blocks(page):
         if block.file_name:
@@ -363,9 +361,7 @@ def test_the_page_runs_from_top_to_bottom(
             assert done.returncode == 0, f"{block.text}\n{done.stdout}\n{done.stderr}"
         elif block.language in SHELLS:
             for command, shown in block.commands():
-                run_command(
-                    tmp_path, command, shown, preloaded, exact="exact" in block.note
-                )
+                run_command(tmp_path, command, shown, preloaded, exact="exact" in block.note)
 
 
 @pytest.mark.slow
