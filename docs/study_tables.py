@@ -12,6 +12,7 @@ import aerocues
 from aerocues.errors import ScoreError
 from aerocues.results.study_dictionary import dictionary
 from docs.study_parts import MOST_NAMED, NOT_YET, Parts
+from docs.study_pixels import widths_compared
 from docs.study_queries import described, in_common, markdown, rank_correlation
 
 
@@ -106,15 +107,7 @@ class Tables(Parts):
         found = self.results(["mini-1000", "mini-4000"])
         if len(found) < 2:
             return NOT_YET
-        small, large = (aerocues.score(each, resamples=2).frame("combination") for each in found)
-        times = [each.table().select(pl.median("total_seconds")).item() for each in found]
-        agree = rank_correlation(small, large)
-        return (
-            f"Ranks at 1,000 and 4,000 pixels have a correlation of {agree} "
-            f"({len(small)} combinations). The best is `{small['combination'][0]}` at 1,000 and "
-            f"`{large['combination'][0]}` at 4,000; an image and a pair take {times[0]:.2f} s and "
-            f"{times[1]:.2f} s in the median."
-        )
+        return widths_compared(*found)
 
     def parts(self) -> str:
         """The parts with machines, versions and licences."""
