@@ -10,10 +10,11 @@ from docs.study_queries import markdown, rank_correlation
 WIDTHS = ("1,000", "4,000")
 SIZES = tuple(f"{width} px" for width in WIDTHS)
 MODEL_FIGURES = {
-    "images": "registered_images",
-    "points": "points_3d",
-    "error, px": "reprojection_error",
-    "CPU s": "reconstruction_seconds",
+    "registered_images": ("images", ",.0f"),
+    "points_3d": ("points", ",.0f"),
+    "reprojection_error": ("error, px", ".2f"),
+    "position_rmse": ("camera error, m", ".3f"),
+    "reconstruction_seconds": ("CPU s", ".0f"),
 }
 
 
@@ -48,10 +49,10 @@ def _ranks(ranked: list[pl.DataFrame], both: tuple[aerocues.Results, aerocues.Re
     labels = ("place", "right share", "CPU s a pair")
     lines = [("combination", *(f"{label} at {size}" for label in labels for size in SIZES))]
     for row in joined.sort("rank_large").iter_rows(named=True):
-        shares = [f"{row[name]:.2f}" for name in ("right", "right_large")]
-        seconds = [f"{row[name]:.2f}" for name in ("seconds", "seconds_large")]
+        names = ("right", "right_large", "seconds", "seconds_large")
         ranks = (str(row["rank"]), str(row["rank_large"]))
-        lines.append((f"`{row['combination']}`", *ranks, *shares, *seconds))
+        figures_told = (_told(row[name], ".2f") for name in names)
+        lines.append((f"`{row['combination']}`", *ranks, *figures_told))
     return markdown(lines)
 
 
@@ -60,23 +61,22 @@ def _models(small: aerocues.Results, large: aerocues.Results) -> tuple[str, ...]
     frames = [each.reconstructions() for each in (small, large)]
     if any(frame.is_empty() for frame in frames):
         return ()
-    frames = [
-        frame.filter(status="ok").select(
-            _combination(), *MODEL_FIGURES.values(), pl.col("images").alias("all")
-        )
-        for frame in frames
-    ]
+    frames = [frame.filter(status="ok").select(_combination(), *MODEL_FIGURES) for frame in frames]
     joined = frames[0].join(frames[1], on="combination", suffix="_large")
-    heads = [f"{label} at {size}" for label in MODEL_FIGURES for size in SIZES]
+    heads = [f"{label} at {size}" for label, _ in MODEL_FIGURES.values() for size in SIZES]
     lines = [("model", *heads)]
     for row in joined.sort("points_3d_large", descending=True).iter_rows(named=True):
         figures = [
-            f"{row[column + end]:,.2f}".removesuffix(".00")
-            for column in MODEL_FIGURES.values()
+            _told(row[column + end], style)
+            for column, (_, style) in MODEL_FIGURES.items()
             for end in ("", "_large")
         ]
         lines.append((f"`{row['combination']}`", *figures))
     return (markdown(lines),)
+
+
+def _told(value: float | None, style: str) -> str:
+    return "" if value is None else f"{value:{style}}"
 
 
 def _combination() -> pl.Expr:

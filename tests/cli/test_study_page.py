@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 import aerocues
+from aerocues.cli.recommendation import STUDIED_AGREEMENT, STUDIED_PLACE
 from aerocues.errors import AerocuesError
 from aerocues.results.packing import folder_content
 from aerocues.results.plan_table import plan_of
@@ -60,6 +61,14 @@ def said(stand_in: Path) -> Findings:
 def test_numbers_follow_the_database(page: str, findings: Findings) -> None:
     text = (REPOSITORY / page).read_text(encoding="utf-8")
     assert text == rendered(page, findings), "out of date; run: make tables"
+
+
+@pytest.mark.slow
+def test_what_recommend_says_of_widths_follows_the_database(findings: Findings) -> None:
+    told = findings.pixels()
+    place, number = STUDIED_PLACE.split(" of ")
+    assert f"have a correlation of {STUDIED_AGREEMENT} ({number} combinations)" in told
+    assert f"has place {place} at" in told
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -193,8 +193,9 @@ def recommend(
                 began=began,
                 progress=progress,
             )
-        _print(found, top, explain=explain)
-        opened = (dataset, pairs, subset, band, every, equalize, _shrunk(images, max_width))
+        shrunk = _shrunk(images, max_width)
+        _print(found, top, shrunk, explain=explain)
+        opened = (dataset, pairs, subset, band, every, equalize, shrunk)
         same = AsMeasured(*opened, preset, max_keypoints, seed, tuple(plugin or ()), upright)
         _print_next(found, same)
         if report is not None:
@@ -244,7 +245,7 @@ def _check_race(limits: Limits, *, as_json: bool) -> None:
         raise typer.BadParameter("--json is for finished results; give --from, too")
 
 
-def _print(found: Recommendation, top: int, *, explain: bool) -> None:
+def _print(found: Recommendation, top: int, shrunk: int, *, explain: bool) -> None:
     from aerocues.cli.console import print_table, standard_output
     from aerocues.cli.final_words import final_table
     from aerocues.cli.recommendation import answer, quality_note, ranking, story
@@ -254,7 +255,7 @@ def _print(found: Recommendation, top: int, *, explain: bool) -> None:
         console.print(f"{found.objective.name}: {found.objective.definition}\n", markup=False)
         print_table(console, story(found.outcome))
         console.print()
-    console.print(answer(found), soft_wrap=True, markup=False)
+    console.print(answer(found, shrunk), soft_wrap=True, markup=False)
     console.print()
     if found.final and found.final.rows:
         print_table(console, final_table(found.final, found.ranked["combination"].to_list()))

@@ -25,6 +25,10 @@ MOST_NAMED = 8
 GOOD = 0.9
 """Share of the best score at which a combination counts as good."""
 FASTER = 2.0
+STUDIED_WIDTHS = (1000, 4000)
+STUDIED_AGREEMENT = "0.59"
+STUDIED_PLACE = "10 of 20"
+"""Where the best combination of the smaller width stands at the larger one (docs/study.md)."""
 ENDS = {
     "budget": "the budget was spent",
     "sure": "the probability is high enough",
@@ -32,8 +36,11 @@ ENDS = {
 }
 
 
-def answer(found: Recommendation) -> str:
-    """The best combination, its probability, the reasons and the cost."""
+def answer(found: Recommendation, shrunk: int = 0) -> str:
+    """The best combination, its probability, the reasons and the cost.
+
+    `shrunk` is the width to which the images were shrunk, 0 for images as they are.
+    """
     final, best = found.final, found.ranked.row(0, named=True)
     parts = [
         _paragraph(headline(final, found.leader) if final else f"Take {found.best}."),
@@ -43,7 +50,7 @@ def answer(found: Recommendation) -> str:
         *_labelled("why", _why(found, best)),
         *_labelled("costs", _costs(found, best)),
         *_labelled("faster", _faster(found, best)),
-        *_labelled("note", _notes(found)),
+        *_labelled("note", [*_notes(found), *_width(shrunk)]),
     ]
     return "\n".join(parts)
 
@@ -186,6 +193,18 @@ def _notes(found: Recommendation) -> list[str]:
         listed = ", ".join(f"{each.detector} {each.keypoints:,}" for each in short)
         notes.append(f"even at their lowest thresholds these find fewer keypoints: {listed}")
     return notes
+
+
+def _width(shrunk: int) -> list[str]:
+    if not shrunk:
+        return []
+    small, large = STUDIED_WIDTHS
+    return [
+        f"the images were shrunk to {shrunk:,} px; if you reconstruct larger ones, the order may "
+        f"be another: on a studied flight, scores at {small:,} and {large:,} px correlate to "
+        f"{STUDIED_AGREEMENT}, and the best at {small:,} px has place {STUDIED_PLACE} at "
+        f"{large:,} px; --max-width {large} measures there"
+    ]
 
 
 def quality_note(found: Recommendation) -> str:
