@@ -5,6 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+# As in the processes of aerocues: beside others, threads of matrix products mostly wait for each
+# other, and burn time while they do. It counts before numpy is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
 from hypothesis import settings
 
@@ -21,8 +25,14 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 
 @pytest.fixture(scope="session", autouse=True)
 def cache(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Keep what is remembered of plug-ins out of the home of whoever runs the tests."""
-    os.environ["AEROCUES_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    """Keep what is remembered of plug-ins out of the home of whoever runs the tests.
+
+    All processes of a run of the tests share it: each plug-in is tried once.
+    """
+    root = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        root = root.parent
+    os.environ["AEROCUES_CACHE"] = str(root / "cache")
 
 
 @pytest.fixture(scope="session")
