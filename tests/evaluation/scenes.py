@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from aerocues.datasets.dataset import Dataset, Geometry, Image, Pair
 from aerocues.datasets.decoding import FileSource
+from aerocues.methods.presets import Preset
 from aerocues.results.schema import COLUMNS, HOW_TIMED
 from tests.methods.pictures import textured
 
@@ -29,6 +30,10 @@ CHANGING = (
     | {column.name for column in HOW_TIMED}
     | {"timing", "machine"}
 )
+
+
+# For tests of anything but quality: the reference of a pair takes longer than the rest of it.
+PLAIN = Preset("plain", "no question about chance", chance_test=False)
 
 
 def write_dataset(

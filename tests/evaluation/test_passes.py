@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,17 +14,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aerocues.datasets.dataset import Pair
+from aerocues.evaluation import run as running
 from aerocues.evaluation.passes import Pass, passes
-from aerocues.evaluation.run import plan_run, run
 from aerocues.progress import Event
 from aerocues.results.measured_results import Results
 from aerocues.results.metrics import PER_THOUSAND, add_metrics
 from aerocues.results.scaled_times import with_scaled_times
 from aerocues.results.schema import empty_row, polars_schema
 from tests.evaluation.inline import InlineEngine
-from tests.evaluation.scenes import assert_same_rows, rows_of, strip, write_dataset
+from tests.evaluation.scenes import PLAIN, assert_same_rows, rows_of, strip, write_dataset
 
-FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
+FEW = "ORB-ORB-HAM-*,FAST-BRIEF-HAM-BF"
+run = functools.partial(running.run, preset=PLAIN)
+plan_run = functools.partial(running.plan_run, preset=PLAIN)
 PASSES = {"estimated": "measuring", "shared": "measuring", "exclusive": "timing"}
 STAGES = (
     *("detect_seconds_1", "detect_seconds_2", "describe_seconds_1", "describe_seconds_2"),

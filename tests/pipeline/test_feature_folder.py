@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from aerocues.pipeline.feature_source import FeatureSource
 from aerocues.pipeline.features import Described, FeatureExtractor
 from aerocues.pipeline.protocol import MeasurementProtocol
 from tests.evaluation.inline import InlineEngine
-from tests.evaluation.scenes import assert_same_rows, rows_of
+from tests.evaluation.scenes import PLAIN, assert_same_rows, rows_of
 
 FEW = "ORB-ORB-HAM-BF,ORB-BRIEF-HAM-FLANN,AKAZE-SIFT-L2-BF,AKAZE-AKAZE-HAM-BF"
 
@@ -59,8 +60,16 @@ def measure(dataset: Dataset, output: Path, features: Path | None, **options: An
         output,
         features=features,
         engine=InlineEngine(),
-        **({"timing": "shared"} | options),
+        **({"timing": "shared", "preset": PLAIN} | options),
     ).table()
+
+
+@pytest.fixture(scope="module")
+def stored(views: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The features of a run; not to be changed."""
+    folder = tmp_path_factory.mktemp("stored")
+    measure(views, folder / "results", folder / "features")
+    return folder / "features"
 
 
 @pytest.mark.slow
@@ -87,34 +96,33 @@ def test_another_run_finds_what_one_kept(
     ("options", "taken"),
     [
         ({"combinations": "ORB-ORB-HAM-FLANN"}, (0, 0)),
-        ({"preset": Preset("strict", "s", True, thresholds={"ORB-ORB": 1.0})}, (0, 0)),
+        ({"preset": Preset("strict", "s", False, thresholds={"ORB-ORB": 1.0})}, (0, 0)),
         ({"timing": "estimated"}, (0, 0)),
         ({"timing": "exclusive"}, (8, 16)),
         ({"seed": 1}, (8, 16)),
         ({"max_keypoints": 100}, (8, 16)),
-        ({"preset": Preset("b", "b", True, {}, {"BRIEF": {"bytes": 32}})}, (0, 4)),
-        ({"preset": Preset("o", "o", True, {"ORB": {"nlevels": 3}})}, (4, 8)),
+        ({"preset": Preset("b", "b", False, {}, {"BRIEF": {"bytes": 32}})}, (0, 4)),
+        ({"preset": Preset("o", "o", False, {"ORB": {"nlevels": 3}})}, (4, 8)),
     ],
 )
 def test_what_decides_features_is_part_of_their_name(
     views: Dataset,
+    stored: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     options: dict[str, Any],
     taken: tuple[int, int],
 ) -> None:
-    count, kept = Count(monkeypatch), tmp_path / "features"
-    measure(views, tmp_path / "a", kept)
-    count.taken()
+    count, kept = Count(monkeypatch), shutil.copytree(stored, tmp_path / "features")
     measure(views, tmp_path / "b", kept, **options)
     assert count.taken() == taken
 
 
 def test_damaged_files_are_made_again(
-    views: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    views: Dataset, stored: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    kept = tmp_path / "features"
-    before = measure(views, tmp_path / "a", kept)
+    kept = shutil.copytree(stored, tmp_path / "features")
+    before = measure(views, tmp_path / "a", None)
     for number, file in enumerate(sorted(kept.rglob("*.npz"))):
         file.write_bytes(file.read_bytes()[: 40 * (number % 3)])
     count = Count(monkeypatch)
@@ -130,7 +138,7 @@ def test_a_full_disk_costs_only_what_would_have_been_kept(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(feature_folder, "write_arrays", full)
-    table = measure(views, tmp_path / "a", tmp_path / "features")
+    table = measure(views, tmp_path / "a", tmp_path / "features", preset="default")
     assert set(table["status"]) == {"ok"}
     [message] = set(table["message"])
     assert str(tmp_path / "features") in message
