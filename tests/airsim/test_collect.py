@@ -71,7 +71,9 @@ def test_a_survey_is_collected_with_its_truth(tmp_path: Path, flavour: str, told
 @pytest.mark.slow
 def test_what_the_embedded_renderer_shows_is_what_it_would_have_written(tmp_path: Path) -> None:
     settings = Settings(width=60, height=40)
-    survey = Survey("two", SURVEY.shots[:2])
+    # From low above, so that the scene is small.
+    poses = (Pose(0, 0, -20, -90, 0), Pose(4, 2, -20, -75, 10))
+    survey = Survey("two", tuple(Shot(f"Layer1/{i:03d}", pose) for i, pose in enumerate(poses)))
     assert fly(tmp_path / "own", survey, settings) == Flown(2, 0)
     # The same scene behind the protocol; each image has the noise of its number.
     from aerocues.simulation.flight import _half
@@ -86,7 +88,7 @@ def test_what_the_embedded_renderer_shows_is_what_it_would_have_written(tmp_path
         return develop(seen.radiance, settings.sensor, noise), seen
 
     with serving(Simulator("cosys", of_rendering(see))) as port:
-        collect(tmp_path / "airsim", survey, replace(ASKED, port=port))
+        collect(tmp_path / "airsim", survey, replace(ASKED, port=port, timeout=60.0))
     for shot in survey.shots:
         own, theirs = (
             np.asarray(Image.open(tmp_path / each / f"{shot.name}.png")).astype(int)

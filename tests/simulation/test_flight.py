@@ -24,11 +24,12 @@ from aerocues.simulation.surveys import Shot, Survey
 
 pytestmark = pytest.mark.slow
 
+# From low above, so that the scene is small.
 SURVEY = Survey(
     "short",
     (
-        Shot("Layer1/000_a", Pose(0, 0, -40, -90, 0)),
-        Shot("Layer1/001_b", Pose(8, 0, -40, -80, 10)),
+        Shot("Layer1/000_a", Pose(0, 0, -20, -90, 0)),
+        Shot("Layer1/001_b", Pose(4, 0, -20, -80, 10)),
     ),
 )
 SETTINGS = Settings(width=120, height=80)
@@ -178,7 +179,7 @@ def test_colmap_reads_the_poses(flight: Path) -> None:
 
 def test_the_trajectory_has_the_centres(flight: Path) -> None:
     rows = np.loadtxt(flight / "truth/trajectory.tum")
-    assert rows[:, 1:4] == pytest.approx(np.array([(0, 0, 40), (0, 8, 40)]))
+    assert rows[:, 1:4] == pytest.approx(np.array([(0, 0, 20), (0, 4, 20)]))
     assert np.linalg.norm(rows[:, 4:], axis=1) == pytest.approx(1.0)
     assert rows[:, 0].tolist() == [0.0, 1.0]
 
