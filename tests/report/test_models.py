@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 
 import aerocues
+from aerocues.report import figures
 from aerocues.report.clouds import clouds_of
 from aerocues.report.entry import entry_facts
 from aerocues.report.figures import write_figures
@@ -26,7 +27,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> aerocues.Results:
 
 
 def models_of(results: aerocues.Results) -> Any:
-    [found] = report_entries([results])
+    [found] = report_entries([results], resamples=50)
     return entry_facts(found)["models"]
 
 
@@ -69,7 +70,7 @@ def test_imported_figures_are_enough(tmp_path: Path) -> None:
         "reprojection_error",
         "reconstruction_seconds",
     ]
-    [found] = report_entries([results])
+    [found] = report_entries([results], resamples=50)
     assert clouds_of(found).clouds == []
 
 
@@ -80,16 +81,20 @@ def test_the_report_holds_the_clouds(results: aerocues.Results, tmp_path: Path) 
 
 
 def test_the_text_tells_of_models(results: aerocues.Results) -> None:
-    text = summary(report_entries([results]), "Models")
+    text = summary(report_entries([results], resamples=50), "Models")
     assert "3 of 6" in text
     assert f"- `{MODELLED[0]}`: 12 of 12 images, 12,000 points, 0.60 px, cameras" in text
     assert "misplaced 1, incomplete 1, no verified pair 1" in text
 
 
 @pytest.mark.slow
-def test_figures_of_models_are_drawn(results: aerocues.Results, tmp_path: Path) -> None:
+def test_figures_of_models_are_drawn(
+    results: aerocues.Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
-    names = {path.name for path in write_figures(report_entries([results]), tmp_path)}
+    kept = {name: figures.FIGURES[name] for name in ("models", "models-relation")}
+    monkeypatch.setattr(figures, "FIGURES", kept)
+    names = {path.name for path in write_figures(report_entries([results], resamples=50), tmp_path)}
     assert {"models.svg", "models.pdf", "models-relation.svg"} <= names
     drawn = (tmp_path / "models.svg").read_text()
     assert "registered images" in drawn
