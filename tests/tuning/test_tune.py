@@ -164,12 +164,10 @@ def test_folders_of_one_name_are_told_apart(call: Call, photos: Path, tmp_path: 
 
 
 @pytest.mark.slow
-def test_thresholds_are_judged_by_the_truth(call: Call, shared_data: Path, tmp_path: Path) -> None:
+def test_thresholds_are_judged_by_the_truth(call: Call, photos: Path, tmp_path: Path) -> None:
     preset = tmp_path / "p.json"
-    spec = f"oxford:{shared_data / 'oxford'}"
-    answer = call(
-        "tune", "SIFT-SIFT-L2-BF", spec, "-o", preset, "--max-keypoints", 500, "--max-pairs", 3
-    )
+    words = ("tune", "SIFT-SIFT-L2-BF", f"synthetic:{photos / '0.png'}", "-o", preset, *WORKERS)
+    answer = call(*words, "--max-keypoints", 200, "--max-pairs", 3)
     assert answer.code == 0, answer.err
     last = json.loads(preset.read_text())["made"]["searches"][-1]
     assert last["search_space"] == "threshold of SIFT-SIFT"
