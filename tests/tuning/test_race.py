@@ -59,7 +59,8 @@ def run(
     seed: int = 0, share: float = 0.15, **settings: float
 ) -> tuple[ReplayEvaluator, RaceOutcome]:
     place = made_up()
-    chosen = replace(RaceSettings(share * place.total, seed), **settings)  # type: ignore[arg-type]
+    chosen = RaceSettings(share * place.total, seed, last_draws=100)
+    chosen = replace(chosen, **settings)  # type: ignore[arg-type]
     return place, race(place, chosen)
 
 
