@@ -54,13 +54,10 @@ class Count:
 
 
 def measure(dataset: Dataset, output: Path, features: Path | None, **options: Any) -> Any:
+    settings: dict[str, Any] = {"timing": "shared", "preset": PLAIN, **options}
+    combinations = settings.pop("combinations", FEW)
     return run(
-        dataset,
-        options.pop("combinations", FEW),
-        output,
-        features=features,
-        engine=InlineEngine(),
-        **({"timing": "shared", "preset": PLAIN} | options),
+        dataset, combinations, output, features=features, engine=InlineEngine(), **settings
     ).table()
 
 
