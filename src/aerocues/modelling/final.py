@@ -11,8 +11,10 @@ from aerocues.errors import FocalLengthError
 from aerocues.methods.combination import Combination
 from aerocues.methods.exact.availability import why_not_exact
 from aerocues.methods.matchers import EXACT, MATCHERS
+from aerocues.modelling.affordable import affordable_images, slowness_of
 from aerocues.phrases import likelihood
 from aerocues.pipeline.block import MOST_IMAGES, connected_block
+from aerocues.pipeline.equal_footing import survey_image
 from aerocues.pipeline.survey import Survey
 from aerocues.progress import Event, Progress
 from aerocues.reconstruction.options import ReconstructionOptions
@@ -60,7 +62,8 @@ def build_final(
     found : Recommendation
         What the race found.
     dataset : Dataset
-        All images. Those of a large flight are a connected block that holds all classes of pairs.
+        All images. Of a large flight, and on a slow machine, models are built of a connected block
+        that holds all classes of pairs.
     seconds : float
         Wall time; what is not finished by then is left out.
     max_keypoints : int
@@ -75,9 +78,16 @@ def build_final(
         Without rows where no model was finished.
     """
     deadline = time.monotonic() + seconds
-    leaders = finalists(found.ranked["combination"].to_list(), Results(found.folder).table())
+    rows = Results(found.folder).table()
+    leaders = finalists(found.ranked["combination"].to_list(), rows)
     asked = tuple(dict.fromkeys(exactly_matched(each) for each in leaders))
-    scene = scene_of_final(dataset, found.flight.survey if found.flight else None)
+    pixels = survey_image(dataset.images).read().bgr
+    most = affordable_images(
+        *(len(dataset.images), seconds, slowness_of(rows)),
+        megapixels=pixels.shape[0] * pixels.shape[1] / 1e6,
+        max_keypoints=max_keypoints,
+    )
+    scene = scene_of_final(dataset, found.flight.survey if found.flight else None, most)
     options = ReconstructionOptions(
         preset=found.preset,
         protocol=ReconstructionProtocol(seed, max_keypoints),
@@ -125,13 +135,16 @@ def exactly_matched(combination: Combination) -> Combination:
     return replace(combination, matcher=EXACT.name)
 
 
-def scene_of_final(dataset: Dataset, survey: Survey | None) -> Dataset:
-    """Images to build and their pairs: those that a survey saw overlap, else the dataset's own."""
+def scene_of_final(dataset: Dataset, survey: Survey | None, most: int = MOST_IMAGES) -> Dataset:
+    """Images to build and their pairs: those that a survey saw overlap, else the dataset's own.
+
+    Of more than so many images a connected block is taken.
+    """
     if survey is None:
         return dataset
     names = set(survey.images)
-    if len(names) > MOST_IMAGES:
-        names = set(connected_block(survey))
+    if len(names) > most:
+        names = set(connected_block(survey, most))
     others = [each for each in dataset.settings if each[0] != "pairs"]
     return replace(
         dataset,

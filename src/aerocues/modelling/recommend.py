@@ -14,9 +14,10 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
 from aerocues.methods.presets import Preset
 from aerocues.methods.selection import Patterns
-from aerocues.modelling.final import LEAST_SECONDS, SHARE, build_final, has_final
+from aerocues.modelling.final import LEAST_SECONDS, MODELS, SHARE, build_final, has_final
 from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress
+from aerocues.reconstruction.scene import FEATURES
 from aerocues.results.store import Store
 from aerocues.tuning.device import Device, as_device
 from aerocues.tuning.journal import record_answer
@@ -110,7 +111,8 @@ def recommend(
         dataset = open_dataset(dataset, max_width=max_width)
     final = final and has_final(dataset, seconds)
     if final:
-        options = replace(options, budget=seconds * (1 - SHARE))
+        kept = f"{MODELS}/{FEATURES}"  # models are made of them there, which then removes them
+        options = replace(options, budget=seconds * (1 - SHARE), features=kept)
     found = recommend_by_race(
         dataset,
         combinations,

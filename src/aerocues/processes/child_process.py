@@ -98,6 +98,7 @@ class ChildProcess:
         )
         theirs.close()
         self._system = psutil.Process(self._process.pid)
+        self._began = time.monotonic()
         self._await_start(start)
 
     def _await_start(self, start: object) -> None:
@@ -177,6 +178,20 @@ class ChildProcess:
         if beat is None or beat.call is None:
             return None, 0.0
         return beat.call, time.monotonic() - beat.wall_time
+
+    @property
+    def wall_seconds(self) -> float:
+        """Since it was started."""
+        return time.monotonic() - self._began
+
+    @property
+    def core_share(self) -> float:
+        """CPU seconds over wall seconds since it was started; 0 where it has died."""
+        try:
+            used = self._system.cpu_times()
+        except psutil.Error:
+            return 0.0
+        return (used.user + used.system) / max(self.wall_seconds, 1.0)
 
     def _call(self) -> StageCall | None:
         beat = self._heartbeat.read()

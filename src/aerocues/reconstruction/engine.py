@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import collections
 import math
-import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
@@ -15,8 +14,10 @@ from aerocues.processes.child_process import ChildProcess, Loss
 from aerocues.progress import Activity, Watch
 from aerocues.reconstruction.matching import Links, Matching
 from aerocues.reconstruction.prepared import Prepared
+from aerocues.reconstruction.remaining_time import RemainingTime
 from aerocues.reconstruction.scene import Scene
 from aerocues.results.metrics import Row
+from aerocues.results.reconstruction_schema import BASELINE
 
 POLL_SECONDS = 0.2
 SECONDS_TO_END = 5.0
@@ -143,24 +144,48 @@ class _Ahead:
     """Processes that match images for models that are made later."""
 
     def __init__(
-        self, scene: Scene, limits: ReconstructionLimits, combinations: Iterable[Combination]
+        self,
+        scene: Scene,
+        limits: ReconstructionLimits,
+        time_left: RemainingTime,
+        combinations: Iterable[Combination],
     ) -> None:
-        self._scene, self._limits = scene, limits
+        self._scene, self._limits, self._time_left = scene, limits, time_left
         self._waiting = collections.deque(combinations)
-        self.children: list[ChildProcess] = []
+        self._next = self._waiting[0] if self._waiting else None
+        self._busy: dict[ChildProcess, Combination] = {}
 
-    def begin(self, busy: int) -> None:
+    @property
+    def children(self) -> list[ChildProcess]:
+        return list(self._busy)
+
+    @property
+    def awaited(self) -> bool:
+        """Whether the model that comes next is not matched yet: later ones would take its time."""
+        return self._time_left.limited and self._next in self._busy.values()
+
+    def begin(self, making: Sequence[ChildProcess]) -> None:
         """Use processes that have nothing to do."""
-        while self._waiting and busy + len(self.children) < self._limits.workers:
-            self.children.append(_child(self._scene, self._limits))
-            self.children[-1].send(Matching(self._waiting.popleft()))
+        while self._waiting and len(making) + len(self._busy) < self._limits.workers:
+            others = [*making, *self._busy]
+            if self._waiting[0] != self._next and not _allowed(self._time_left, others):
+                return
+            combination = self._waiting.popleft()
+            child = _child(self._scene, self._limits)
+            child.send(Matching(combination))
+            self._busy[child] = combination
 
     def end(self, ready: Sequence[object]) -> None:
         """Stop those that are done or take too long; making the model will say why."""
-        for child in list(self.children):
+        for child, combination in list(self._busy.items()):
             if child.pipe in ready or child.overrun(self._limits.seconds):
+                self._time_left.worked(combination, child.wall_seconds, made=False)
                 child.stop()
-                self.children.remove(child)
+                del self._busy[child]
+
+
+def _allowed(time_left: RemainingTime, others: Sequence[ChildProcess]) -> bool:
+    return time_left.allows(each.core_share for each in others)
 
 
 def run_reconstructions(
@@ -168,11 +193,14 @@ def run_reconstructions(
     groups: Sequence[Group],
     limits: ReconstructionLimits,
     watch: Watch,
+    time_left: RemainingTime,
     ahead: Iterable[Combination] = (),
 ) -> Generator[tuple[Combination, Row, bool], None, None]:
-    """Reconstruct all groups, or as many as are finished before the deadline.
+    """Reconstruct all groups in their order, or as many as are finished before the deadline.
 
-    Processes that have nothing to do meanwhile match images for the combinations `ahead`.
+    Where there is a deadline, one after the other has what it needs: another is begun beside it
+    only where cores are free, and only if the time left is enough. Processes that have nothing to
+    do meanwhile match images for the combinations `ahead`.
 
     Yields
     ------
@@ -180,14 +208,18 @@ def run_reconstructions(
         The combination, the row of its reconstruction (even if its process died), and whether it
         was the last of its group.
     """
-    queue, matching = collections.deque(groups), _Ahead(scene, limits, ahead)
+    queue, matching = collections.deque(groups), _Ahead(scene, limits, time_left, ahead)
     lanes: list[_Lane] = []
     try:
-        while (queue or lanes) and time.monotonic() < limits.deadline:
-            while queue and len(lanes) < limits.workers:
+        while (queue or lanes or matching.awaited) and time_left.left:
+            making = [lane.child for lane in lanes]
+            while queue and len(lanes) < limits.workers and _allowed(time_left, making):
                 lanes.append(_Lane(queue.popleft(), _child(scene, limits)))
-            matching.begin(len(lanes))
-            children = [*(lane.child for lane in lanes), *matching.children]
+                making.append(lanes[-1].child)
+            matching.begin(making)
+            children = [*making, *matching.children]
+            if not children:
+                return  # what is left would not be finished
             watch([Activity(n, *child.doing()) for n, child in enumerate(children)])
             ready = wait([child.pipe for child in children], POLL_SECONDS)
             matching.end(ready)
@@ -196,6 +228,8 @@ def run_reconstructions(
                     found = lane.child.receive()
                 elif (found := lane.child.overrun(limits.seconds)) is None:
                     continue
+                if lane.combination != BASELINE:
+                    time_left.worked(lane.combination, lane.child.wall_seconds, made=True)
                 lane.child.stop(0.0 if isinstance(found, Loss) else SECONDS_TO_END)
                 lanes.remove(lane)
                 if lane.group:

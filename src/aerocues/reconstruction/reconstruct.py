@@ -23,6 +23,7 @@ from aerocues.reconstruction.matching import remove_features
 from aerocues.reconstruction.models import SETTINGS, Models, write_outcome
 from aerocues.reconstruction.options import ReconstructionOptions
 from aerocues.reconstruction.reconstruction_progress import ReconstructionProgress
+from aerocues.reconstruction.remaining_time import RemainingTime
 from aerocues.reconstruction.rows import Rows, finished_rows, identity_of, other_rows, write_rows
 from aerocues.reconstruction.scene import Scene
 from aerocues.reconstruction.scene_making import (
@@ -93,6 +94,7 @@ class _Reconstruction:
         self._options = options
         self._tell = tell
         self._limits = options.limits()
+        self._time_left = RemainingTime(self._limits.deadline)
         self._calibration: dict[str, object] = {}
 
     def run(self, reference: Combination | None, store: Store | None) -> None:
@@ -117,6 +119,7 @@ class _Reconstruction:
         if reference is not None and reference not in (*self._chosen, *others, *rows):
             raise _no_reference(reference)
         present = self._finished(self._chosen)
+        self._time_left.learn(present)
         if present or not made:
             self._tell.planned(total, len(first) + len(present))
         rows = {**others, **rows, **present}
@@ -128,6 +131,8 @@ class _Reconstruction:
                 self._tell.without_reference(reference, str(rows[reference]["message"]))
             if rows:
                 write_rows(self._scene, rows, reference, store)
+        missing = [each for each in (*first, *self._chosen) if each not in rows]
+        self._tell.without_time(missing, self._time_left)
         remove_features(self._scene)
 
     def _finished(self, combinations: list[Combination]) -> Rows:
@@ -164,8 +169,8 @@ class _Reconstruction:
     def _made(
         self, combinations: list[Combination], ahead: Sequence[Combination] = ()
     ) -> Iterator[tuple[Combination, Row]]:
-        scene, limits, watch = self._scene, self._limits, self._tell.watch
-        running = run_reconstructions(scene, in_groups(combinations), limits, watch, ahead)
+        scene, limits, watch, left = self._scene, self._limits, self._tell.watch, self._time_left
+        running = run_reconstructions(scene, in_groups(combinations), limits, watch, left, ahead)
         with contextlib.closing(running):  # an interruption ends the processes here and now
             for combination, figures, last in running:
                 when = {"reconstructed_at": time.time(), "time_limit": limits.seconds}

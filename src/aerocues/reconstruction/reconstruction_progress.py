@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aerocues.methods.combination import Combination
-from aerocues.phrases import count
+from aerocues.phrases import count, spoken_seconds
 from aerocues.processes.call import StageCall
 from aerocues.progress import Activity, Progress, StageProgress
+from aerocues.reconstruction.remaining_time import RemainingTime
 from aerocues.results.metrics import Row
+from aerocues.results.reconstruction_schema import BASELINE
 
 # Where each stage of a model begins and ends, as shares of its time: rough, for the time left.
 SHARES = {
@@ -95,6 +97,18 @@ class ReconstructionProgress:
     def without_baseline(self, reason: str) -> None:
         """COLMAP's default cannot be made with this version of it."""
         self._making.tell(message=f"no row of COLMAP's default: {reason}")
+
+    def without_time(self, missing: Sequence[Combination], time_left: RemainingTime) -> None:
+        """Report models for which the time before the deadline was not enough."""
+        if not missing:
+            return
+        if BASELINE in missing:
+            reason = "COLMAP's default, which is made first, was not finished"
+        elif time_left.needed is None:
+            reason = f"{missing[0]}, which is made next, was not finished"
+        else:
+            reason = f"each takes about {spoken_seconds(time_left.needed)}"
+        self._making.tell(message=f"no time for {count(len(missing), 'model')}: {reason}")
 
     def note(self, message: str) -> None:
         """Report what concerns all models, such as whether their intrinsics are calibrated."""

@@ -30,7 +30,8 @@ class Final:
     rows : tuple of mapping
         Rows of the table of reconstructions, the best first.
     asked : tuple of Combination
-        All that were to be built; those without a row were not finished in time.
+        All that were to be built after COLMAP's default, in this order; those without a row were
+        not finished in time.
     images, of : int
         How many images were reconstructed, and how many the flight has.
     folder : Path
@@ -79,10 +80,15 @@ class Final:
         return next((row for row in built if name_in_row(row) != str(BASELINE)), None)
 
     @property
+    def order(self) -> tuple[str, ...]:
+        """All in the order in which they were to be built: COLMAP's default, then by rank."""
+        return (str(BASELINE), *map(str, self.asked))
+
+    @property
     def unfinished(self) -> tuple[str, ...]:
         """Those that there was no time for."""
         names = {name_in_row(row) for row in self.rows}
-        return tuple(str(each) for each in (BASELINE, *self.asked) if str(each) not in names)
+        return tuple(name for name in self.order if name not in names)
 
 
 def final_order(row: Mapping[str, Any], objective: Objective) -> Order:

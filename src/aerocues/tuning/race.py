@@ -33,8 +33,7 @@ FEW = 5
 _MOST_BLOCKS = 8
 # Pairs that a possible winner needs before the race may end early: measured values count as
 # certain, so that a single lucky pair looks like a sure win. More are safer and take longer.
-_FEWEST_PAIRS = 2
-_PAIRS_OF_WINNER = 5
+_FEWEST_PAIRS, _PAIRS_OF_WINNER = 2, 5
 # Seconds to draw a table, per value and feature, until the first round was timed. Too high a guess
 # ends a short race early, too low a one exceeds the budget.
 _DRAW_SECONDS = 1.6e-7
@@ -90,16 +89,14 @@ class Round:
 
     Parameters
     ----------
-    spent : float
-        Seconds.
-    measured : int
-        Cells.
+    spent, measured : float, int
+        Seconds, and cells.
     contenders : int
         Alternatives that are among the `FEW` best in at least one drawn table.
-    leader : str
-        Alternative with the highest expected score.
-    probability : float
-        Share of the drawn tables that it wins.
+    leader, probability : str, float
+        Alternative with the highest expected score, and the share of the drawn tables that it wins.
+    ranked : sequence of str
+        All alternatives, the best first.
     """
 
     spent: float
@@ -107,6 +104,7 @@ class Round:
     contenders: int
     leader: str
     probability: float
+    ranked: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +198,7 @@ class _Race:
             interest = interest_of(drawn, FEW)
             leader = int(np.argmax(scores))
             chance = float(chances(drawn)[leader])
-            self._report(leader, chance, int((interest > 0).sum()))
+            self._report(scores, chance, int((interest > 0).sum()))
             cells = self._next(interest)
             ended = self._ended(leader, chance, interest, more=bool(cells))
             if ended is not None:
@@ -213,9 +211,10 @@ class _Race:
                 cells = self._next(np.where(doubtful, probability, 0.0)) or cells
             self._measure(cells)
 
-    def _report(self, leader: int, chance: float, contenders: int) -> None:
-        name, spent = self._evaluator.alternatives[leader], self._evaluator.spent
-        self._rounds.append(Round(spent, int(self._known.sum()), contenders, name, chance))
+    def _report(self, scores: Array, chance: float, contenders: int) -> None:
+        ranked = [self._evaluator.alternatives[each] for each in np.argsort(-scores, kind="stable")]
+        figures = self._evaluator.spent, int(self._known.sum()), contenders
+        self._rounds.append(Round(*figures, ranked[0], chance, ranked))
         self._on_round(self._rounds[-1])
 
     def _ended(self, leader: int, chance: float, interest: Array, *, more: bool) -> Ended | None:

@@ -19,6 +19,7 @@ from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import Patterns, select
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.pipeline.equal_footing import at_equal_footing
+from aerocues.pipeline.feature_folder import checked_folder
 from aerocues.pipeline.flight_pairs import SurveyedFlight, survey_flight
 from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress
@@ -30,8 +31,9 @@ from aerocues.scoring.settings import ScorePreset
 from aerocues.tuning.device import Device
 from aerocues.tuning.image_evaluator import ImageEvaluator
 from aerocues.tuning.journal import Journal
+from aerocues.tuning.kept_features import has_room, keep_best
 from aerocues.tuning.pair_evaluator import PairEvaluator
-from aerocues.tuning.race import RaceSettings, race
+from aerocues.tuning.race import RaceSettings, Round, race
 from aerocues.tuning.race_progress import RaceProgress
 from aerocues.tuning.race_ranking import race_ranking
 from aerocues.tuning.recommendation import Recommendation
@@ -41,7 +43,11 @@ from aerocues.tuning.session import Session
 
 @dataclass(frozen=True)
 class RaceOptions:
-    """What is raced for, and how long; see `aerocues.recommend`."""
+    """What is raced for, and how long; see `aerocues.recommend`.
+
+    ``features`` is a folder within the results, in which the features of the best are kept; by
+    default none are.
+    """
 
     budget: float = RACE_SECONDS
     objective: str = "balanced"
@@ -49,6 +55,7 @@ class RaceOptions:
     max_pairs: int = RACE_PAIRS
     seed: int = 0
     device: Device | None = None
+    features: str | None = None
 
     def __post_init__(self) -> None:
         check_choice("objective", self.objective, OBJECTIVES)
@@ -117,7 +124,8 @@ def recommend_by_race(
         context.methods, parts, part.images, chosen, limit, seed=seed, progress=reached
     )
     context = make_context(part, parts, seed=seed, timing="estimated", limit=limit)
-    context = replace(context, references=store.references)
+    kept = _kept_features(store, options)
+    context = replace(context, references=store.references, features=kept)
     with store.writing(), engine_here.standing(context) as engine:
         evaluators = _evaluators(context, chosen, store, parts, tell.read)
         key, there = _key(evaluators, chosen, options), evaluators.race.there
@@ -140,7 +148,7 @@ def recommend_by_race(
         if flight:
             evaluator.classes = flight.classes_of(raced)
         settings = options.settings(aim, scoring)
-        outcome = race(evaluator, settings, tell.round, given=evaluator.given())
+        outcome = race(evaluator, settings, _after_rounds(tell, kept), given=evaluator.given())
     return Recommendation(
         part,
         seen,
@@ -156,6 +164,24 @@ def recommend_by_race(
         tuple(footings),
         flight,
     )
+
+
+def _kept_features(store: Store, options: RaceOptions) -> Path | None:
+    """The folder of features, if any are to be kept and the disk has room for them."""
+    if options.features is None or not has_room(store.folder):
+        return None
+    return checked_folder((store.folder / options.features).absolute())
+
+
+def _after_rounds(tell: RaceProgress, kept: Path | None) -> Callable[[Round], None]:
+    """What is done after each round of a race."""
+
+    def after(finished: Round) -> None:
+        tell.round(finished)
+        if kept:
+            keep_best(kept, finished.ranked)
+
+    return after
 
 
 def _surveyed(

@@ -137,6 +137,7 @@ class Recommendation:
             and {
                 "images": final.images,
                 "of": final.of,
+                "order": list(final.order),
                 "models": [name_in_row(row) for row in final.rows],
                 "unfinished": list(final.unfinished),
             },

@@ -90,7 +90,7 @@ interface RaceAnswer {
   pairs: number;
   candidates: number;
   ranked: {combination: string; score: number; probability: number; pairs: number; succeeded: number}[];
-  final: {images: number; of: number; models: string[]; unfinished: string[]} | null;
+  final: {images: number; of: number; order?: string[]; models: string[]; unfinished: string[]} | null;
 }
 
 interface Pair {
