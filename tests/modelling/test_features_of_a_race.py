@@ -83,9 +83,9 @@ def test_models_with_and_without_features_of_the_race_are_the_same(
     assert {name: reused[name] for name in reused if not name.endswith("_seconds")} == {
         name: anew[name] for name in anew if not name.endswith("_seconds")
     }
-    points = [
+    of_race, of_its_own = (
         read_cloud(file.read_bytes(), file).points
         for file in (place / MODELS / str(ORB) / CLOUD for place in (raced.folder, tmp_path))
-    ]
-    assert len(points[0])
-    np.testing.assert_array_equal(*points)
+    )
+    assert len(of_race)
+    np.testing.assert_array_equal(of_race, of_its_own)

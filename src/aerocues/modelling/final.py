@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -50,6 +49,7 @@ def build_final(
     dataset: Dataset,
     *,
     seconds: float,
+    deadline: float,
     max_keypoints: int,
     seed: int,
     workers: int | None,
@@ -65,7 +65,10 @@ def build_final(
         All images. Of a large flight, and on a slow machine, models are built of a connected block
         that holds all classes of pairs.
     seconds : float
-        Wall time; what is not finished by then is left out.
+        Wall time that the race left; it decides how many images are built.
+    deadline : float
+        Time of `time.monotonic`; what is not finished by then is left out. It is earlier than
+        `seconds` from now where the race ended late.
     max_keypoints : int
         Of an image, for COLMAP's default, too; 0: all.
     seed : int
@@ -77,7 +80,6 @@ def build_final(
     Final
         Without rows where no model was finished.
     """
-    deadline = time.monotonic() + seconds
     rows = Results(found.folder).table()
     leaders = finalists(found.ranked["combination"].to_list(), rows)
     asked = tuple(dict.fromkeys(exactly_matched(each) for each in leaders))

@@ -14,7 +14,7 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.defaults import FLIGHT_KEYPOINTS, RACE_PAIRS, RACE_SECONDS, RACE_WIDTH, SURE
 from aerocues.methods.presets import Preset
 from aerocues.methods.selection import Patterns
-from aerocues.modelling.final import LEAST_SECONDS, MODELS, SHARE, build_final, has_final
+from aerocues.modelling.final import MODELS, SHARE, build_final, has_final
 from aerocues.pipeline.upright import turned_upright
 from aerocues.progress import Progress
 from aerocues.reconstruction.scene import FEATURES
@@ -128,10 +128,12 @@ def recommend(
     if final:
         if upright:  # by the survey of the race
             dataset = turned_upright(dataset, seed, folder=Store.open(found.folder).surveys)
+        left = seconds - found.outcome.rounds[-1].spent
         built = build_final(
             found,
             dataset,
-            seconds=max(seconds - found.outcome.rounds[-1].spent, LEAST_SECONDS),
+            seconds=left,
+            deadline=min(began + seconds, time.monotonic() + left),
             max_keypoints=max_keypoints,
             seed=seed,
             workers=workers,
