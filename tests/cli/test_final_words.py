@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import pytest
+
 from aerocues.cli.final_words import headline, notes
 from aerocues.results.reconstruction_schema import BASELINE
 from tests.tuning.test_final import ORB, SIFT, final, model
@@ -36,6 +40,19 @@ def test_a_final_without_models_says_what_was_to_be_built() -> None:
     told = " ".join(notes(none))
     assert "no model of all images (10 of 10) was finished in time" in told
     assert f"no time for COLMAP's default, {ORB}, {SIFT}" in told
+
+
+def test_colmaps_default_alone_is_told() -> None:
+    alone = headline(final(model(BASELINE)), LEADER)
+    assert alone.startswith(f"Take {LEADER}, which leads the race: only")
+    assert alone.endswith("COLMAP's default was finished in time.")
+
+
+@pytest.mark.parametrize(("images", "of", "short"), [(12, 18, True), (30, 90, False)])
+def test_a_smaller_block_is_told(images: int, of: int, short: bool) -> None:
+    told = " ".join(notes(replace(final(model(SIFT)), images=images, of=of)))
+    assert f"a connected block of the flight ({images} of {of}" in told
+    assert ("the time is too short for more" in told) is short
 
 
 def test_notes_tell_who_came_close_and_who_had_no_time() -> None:

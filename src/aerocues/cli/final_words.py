@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aerocues.cli.console import plain_table
 from aerocues.phrases import count, spoken_seconds
+from aerocues.pipeline.block import MOST_IMAGES
 from aerocues.results.combination_columns import name_in_row
 from aerocues.results.reconstruction_schema import BASELINE
 from aerocues.tuning.final import images_in_place, model_value
@@ -29,7 +30,10 @@ def headline(final: Final, leader: str) -> str:
     """
     best, baseline = final.best, final.baseline
     if best is None:
-        return f"Take {leader}, which leads the race: no model was finished in time."
+        made = (
+            f"only the model of {COLMAP_DEFAULT}" if list(final.rows) == [baseline] else "no model"
+        )
+        return f"Take {leader}, which leads the race: {made} was finished in time."
     if is_baseline(best):
         other = final.best_combination
         beside = f" The best combination, {name_in_row(other)}: {_short(other)}." if other else ""
@@ -44,6 +48,8 @@ def notes(final: Final) -> list[str]:
     """What was built of which images, who came close, and what there was no time for."""
     part = "all images" if final.images == final.of else "a connected block of the flight"
     share = f"{part} ({final.images} of {final.of})"
+    if final.images < min(MOST_IMAGES, final.of):
+        share = f"{part} ({final.images} of {final.of}; the time is too short for more)"
     told = [f"no model of {share} was finished in time"]
     if final.rows:
         told = [
