@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from aerocues.methods.combination import Combination
@@ -12,6 +14,8 @@ from aerocues.reconstruction.reconstruction_progress import (
     share_of_model,
     summary,
 )
+from aerocues.reconstruction.remaining_time import RemainingTime
+from aerocues.results.reconstruction_schema import BASELINE
 
 METHODS = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
 MADE = {
@@ -72,3 +76,24 @@ def test_processes_tell_how_far_their_models_are() -> None:
     tell.watch([Activity(0, None, 0.0)])
     assert events[-1].share == pytest.approx(0.57)
     assert share_of_model(None) == 0.0
+
+
+def test_models_without_time_are_told_where_there_is_a_deadline() -> None:
+    events: list[Event] = []
+    tell = ReconstructionProgress(events.append)
+    orb, sift = (Combination.parse(name) for name in ("ORB-ORB-HAM-BF", "SIFT-SIFT-L2-BF"))
+    left = RemainingTime(math.inf)
+    tell.without_time([BASELINE], left)
+    assert events == []
+    left = RemainingTime(0.0)
+    tell.without_time([], left)
+    assert events == []
+    tell.without_time([BASELINE, orb, sift], left)
+    tell.without_time([orb, sift], left)
+    left.worked(orb, 21.0, made=True)
+    tell.without_time([sift], left)
+    assert [event.message for event in events] == [
+        "no time for 3 models: COLMAP's default, which is made first, was not finished",
+        "no time for 2 models: ORB-ORB-HAM-BF, which is made next, was not finished",
+        "no time for 1 model: each takes about 21 s",
+    ]

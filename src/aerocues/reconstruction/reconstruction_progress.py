@@ -99,8 +99,8 @@ class ReconstructionProgress:
         self._making.tell(message=f"no row of COLMAP's default: {reason}")
 
     def without_time(self, missing: Sequence[Combination], time_left: RemainingTime) -> None:
-        """Report models for which the time before the deadline was not enough."""
-        if not missing:
+        """Report models for which the time before a deadline was not enough."""
+        if not missing or not time_left.limited:
             return
         if BASELINE in missing:
             reason = "COLMAP's default, which is made first, was not finished"
