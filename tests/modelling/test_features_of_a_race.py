@@ -72,6 +72,7 @@ def made(found: Recommendation, dataset: Dataset, folder: Path) -> tuple[Any, se
     return CombinationModel(there, ORB, announce).make(), stages
 
 
+@pytest.mark.slow
 def test_models_with_and_without_features_of_the_race_are_the_same(
     raced: Recommendation, four: Dataset, tmp_path: Path
 ) -> None:
