@@ -24,7 +24,7 @@ MATRIX = np.array([[420.0, 0, 239.5], [0, 420.0, 179.5], [0, 0, 1]])
 ALTITUDE = 40.0
 HALF_WIDTH = 45.0
 PIXELS_PER_METRE = 16
-GRID = [(x, y) for y in (-9.0, 0.0, 9.0) for x in (-9.0, 0.0, 9.0)]
+GRID = [(x, y) for y in (-9.0, 0.0) for x in (-9.0, 0.0, 9.0)]
 
 
 @dataclass(frozen=True)

@@ -43,5 +43,5 @@ def test_features_of_half_the_width_make_a_model(
         landscape, "SIFT-SIFT-L2-EXACT", empty, features_width=240, workers=1, **quick
     )
     [row] = models.table().to_dicts()
-    assert (row["status"], row["registered_images"], row["features_width"]) == ("ok", 9, 240)
+    assert (row["status"], row["registered_images"], row["features_width"]) == ("ok", 6, 240)
     assert row["reprojection_error"] < 0.5

@@ -34,7 +34,7 @@ def test_features_that_a_run_kept_are_used_again(
 ) -> None:
     kept = tmp_path / "features"
     results = aerocues.run(
-        replace(landscape, pairs=[*landscape.pairs[:8]]),
+        replace(landscape, pairs=[*landscape.pairs[:5]]),
         "ORB-ORB-HAM-BF",
         tmp_path / "results",
         max_keypoints=quick["max_keypoints"],
