@@ -10,7 +10,7 @@ import mmap
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from aerocues.methods.arrays import Features, Keypoints, Matches
 
 MARK = (1, 254, 3)
 HEALTHY = "AEROCUES_TEST_HEALTHY"
+GATE = "gate"
 Image = NDArray[np.uint8]
 
 
@@ -92,7 +93,14 @@ def do_nothing() -> None:
     pass
 
 
-FAULTS: dict[str, Callable[[], None]] = {
+def wait() -> bool:
+    """No fault: it takes until the test makes a file, and then does what it should."""
+    while not (Path(os.environ["AEROCUES_TEST_RUN"]) / GATE).exists():
+        time.sleep(0.02)
+    return True
+
+
+FAULTS: dict[str, Callable[[], bool | None]] = {
     "SEGFAULT": segfault,
     "LEAVE": leave,
     "SLEEP": sleep,
@@ -105,6 +113,7 @@ FAULTS: dict[str, Callable[[], None]] = {
     "STRANGE": fail_strangely,
     "NONSENSE": do_nothing,
     "KILL_PARENT": kill_parent,
+    "PATIENT": wait,
 }
 
 
@@ -116,8 +125,7 @@ class FaultyDetector:
         self.native: Any = cv2.ORB_create(200)
 
     def detect(self, image: Image) -> Any:
-        if is_marked(image):
-            FAULTS[self.fault]()
+        if is_marked(image) and not FAULTS[self.fault]():
             return [1, 2, 3]
         return Keypoints.from_opencv(self.native.detect(image))
 
@@ -132,8 +140,7 @@ class FaultyDescriptor:
         self.native: Any = cv2.ORB_create(200)
 
     def describe(self, image: Image, keypoints: Keypoints) -> Any:
-        if is_marked(image):
-            FAULTS[self.fault]()
+        if is_marked(image) and not FAULTS[self.fault]():
             return Features(keypoints, np.zeros((len(keypoints), 32), np.float32))
         native, rows = self.native.compute(image, keypoints.to_opencv())
         return Features(Keypoints.from_opencv(native), rows)
@@ -168,13 +175,15 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(name)
 
 
-def entry_points(faults: list[str]) -> dict[str, dict[str, str]]:
-    """What a distribution of the faulty methods offers; a descriptor's name begins with ``D_``."""
+def entry_points(names: Sequence[str]) -> dict[str, dict[str, str]]:
+    """What a distribution of faulty methods offers; a descriptor's name begins with ``D_``."""
     here = __name__
     return {
-        "detectors": {fault: f"{here}:Detector_{fault}" for fault in faults},
-        "descriptors": {f"D_{fault}": f"{here}:Descriptor_{fault}" for fault in faults},
-        "matchers": {"KILLER": f"{here}:FaultyMatcher"},
+        "detectors": {name: f"{here}:Detector_{name}" for name in names if name in FAULTS},
+        "descriptors": {
+            name: f"{here}:Descriptor_{name[2:]}" for name in names if name.startswith("D_")
+        },
+        "matchers": {name: f"{here}:FaultyMatcher" for name in names if name == "KILLER"},
     }
 
 
