@@ -26,17 +26,17 @@ from aerocues.results.measured_results import Results
 from aerocues.results.store import Store
 from aerocues.results.versions import software_versions
 from tests.evaluation.cluster import Cluster
-from tests.evaluation.faults import HEALTHY, entry_points, mark, workers_of
+from tests.evaluation.faults import GATE, HEALTHY, entry_points, mark, workers_of
 from tests.evaluation.inline import InlineEngine
-from tests.evaluation.scenes import Rows, assert_same_rows, rows_of, strip, write_dataset
-from tests.made_once import made_once
+from tests.evaluation.scenes import PLAIN, Rows, assert_same_rows, rows_of, strip, write_dataset
 from tests.methods.distribution import write_distribution
 from tests.waiting import wait_until
 
 # One pass over all pairs, on all workers at once.
-run = functools.partial(running.run, timing="shared")
+run = functools.partial(running.run, timing="shared", preset=PLAIN)
 FEW = "ORB-ORB-HAM-*,SIFT-SIFT-L2-BF"
-MANY = "ORB-*-HAM-BF,SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-*,BRISK-BRISK-HAM-BF,!*-BOOST-*"
+# Some rows at once; others not before the test lets them.
+PATIENT = "PATIENT-ORB-HAM-BF,ORB-ORB-HAM-BF"
 LIMITS: dict[str, Any] = {"timeout": 8, "memory_limit": 700 / 1024}
 pytestmark = pytest.mark.slow
 
@@ -76,9 +76,10 @@ def test_rows_equal_those_of_the_local_engine(
     cluster.add_worker()
     with connected(cluster.address) as client:
         assert DaskEngine(client).dashboard
-        results = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
-        again = run(views, FEW, tmp_path / "dask", engine=DaskEngine(client))
-    local = run(views, FEW, tmp_path / "local", workers=1)
+        words: dict[str, Any] = {"preset": "default", "engine": DaskEngine(client)}
+        results = run(views, FEW, tmp_path / "dask", **words)
+        again = run(views, FEW, tmp_path / "dask", **words)
+    local = run(views, FEW, tmp_path / "local", preset="default", workers=1)
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
     assert len(Store(again.folder).rows()) == len(local.table())
     assert results.table()["machine"].to_list() == local.table()["machine"].to_list()
@@ -95,45 +96,59 @@ def test_rows_of_long_units_come_pair_by_pair(
     assert_same_rows(rows_of(results.table()), rows_of(local.table()))
 
 
-@pytest.fixture(scope="module")
-def eight(tmp_path_factory: pytest.TempPathFactory) -> tuple[Dataset, Rows]:
-    """Eight views, and the rows of `MANY` as measured without a cluster."""
+@pytest.fixture
+def faulty(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Dataset:
+    """Five views; methods that some of the tests install go wrong on the third."""
+    names = ["SEGFAULT", "D_SLEEP", "FAIL", "KILL_PARENT", "PATIENT"]
+    write_distribution(tmp_path / "site", "faults", entry_points(names), {})
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    pictures = strip(5)
+    mark(pictures["view_2.png"])
+    return write_dataset(tmp_path / "images", pictures)
 
-    def make(folder: Path) -> tuple[Dataset, Rows]:
-        dataset = write_dataset(folder / "images", strip(8))
-        undisturbed = run(dataset, MANY, folder / "r", engine=InlineEngine())
-        return dataset, rows_of(undisturbed.table())
 
-    return made_once(tmp_path_factory, "eight-views", make)[1]
+@pytest.fixture
+def healthy(
+    faulty: Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Callable[[str], Rows]:
+    """The rows of combinations where nothing goes wrong."""
+
+    def measure(combinations: str) -> Rows:
+        with monkeypatch.context() as patch:
+            patch.setenv(HEALTHY, "1")
+            results = run(faulty, combinations, tmp_path / "healthy", engine=InlineEngine())
+            return rows_of(results.table())
+
+    return measure
 
 
 def test_workers_that_die_and_one_that_comes_late(
-    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
+    cluster: Cluster, faulty: Dataset, healthy: Callable[[str], Rows], tmp_path: Path
 ) -> None:
-    dataset, undisturbed = eight
-    first = [cluster.add_worker() for _ in range(3)]
+    first = [cluster.add_worker() for _ in range(2)]
     with connected(cluster.address) as client:
-        client.wait_for_workers(3)
+        client.wait_for_workers(2)
+        known = set(client.nthreads())
 
         def kill_one_and_add_one() -> None:
             first[0].send_signal(signal.SIGKILL)
             cluster.add_worker()
-            wait_until(lambda: len(client.nthreads()) == 3)
+            wait_until(lambda: set(client.nthreads()) - known)
             # The late one has to do the rest.
-            for worker in first[1:]:
-                worker.send_signal(signal.SIGKILL)
+            first[1].send_signal(signal.SIGKILL)
+            (tmp_path / GATE).touch()
 
         observer = During(kill_one_and_add_one)
-        results = run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), progress=observer)
+        engine = DaskEngine(client, longest_seconds=0)
+        results = run(faulty, PATIENT, tmp_path / "r", engine=engine, progress=observer)
     assert observer.action is None
     assert observer.seen
-    assert_same_rows(rows_of(results.table()), undisturbed)
+    assert_same_rows(rows_of(results.table()), healthy(PATIENT))
 
 
 def test_an_interruption_keeps_what_was_finished_and_ends_processes(
-    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
+    cluster: Cluster, faulty: Dataset, healthy: Callable[[str], Rows], tmp_path: Path
 ) -> None:
-    dataset, undisturbed = eight
     cluster.add_worker()
 
     def interrupt() -> None:
@@ -142,37 +157,23 @@ def test_an_interruption_keeps_what_was_finished_and_ends_processes(
     with connected(cluster.address) as client:
         engine = DaskEngine(client, longest_seconds=0)
         with pytest.raises(KeyboardInterrupt):
-            run(dataset, MANY, tmp_path / "r", engine=engine, progress=During(interrupt))
+            run(faulty, PATIENT, tmp_path / "r", engine=engine, progress=During(interrupt))
         wait_until(lambda: not workers_of(str(tmp_path)))
         kept = Results(tmp_path / "r").status()
         assert 0 < kept.planned - kept.left < kept.planned
-        results = run(dataset, MANY, tmp_path / "r", engine=engine)
-    assert_same_rows(rows_of(results.table()), undisturbed)
+        (tmp_path / GATE).touch()
+        results = run(faulty, PATIENT, tmp_path / "r", engine=engine)
+    assert_same_rows(rows_of(results.table()), healthy(PATIENT))
 
 
-def test_a_lost_scheduler_is_an_error(
-    cluster: Cluster, eight: tuple[Dataset, Rows], tmp_path: Path
-) -> None:
-    dataset, _ = eight
+def test_a_lost_scheduler_is_an_error(cluster: Cluster, faulty: Dataset, tmp_path: Path) -> None:
     cluster.add_worker()
     observer = During(cluster.kill_scheduler)
-    with (
-        connected(cluster.address) as client,
-        pytest.raises(EngineError, match="scheduler"),
-    ):
-        run(dataset, MANY, tmp_path / "r", engine=DaskEngine(client), progress=observer)
+    with connected(cluster.address) as client:
+        engine = DaskEngine(client, longest_seconds=0)
+        with pytest.raises(EngineError, match="scheduler"):
+            run(faulty, PATIENT, tmp_path / "r", engine=engine, progress=observer)
     assert len(Results(tmp_path / "r").table())
-
-
-@pytest.fixture
-def faulty(cluster: Cluster, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Dataset:
-    """Five views; methods that some of the tests install go wrong on the third."""
-    faults = ["SEGFAULT", "SLEEP", "FAIL", "KILL_PARENT"]
-    write_distribution(tmp_path / "site", "faults", entry_points(faults), {})
-    monkeypatch.syspath_prepend(tmp_path / "site")
-    pictures = strip(5)
-    mark(pictures["view_2.png"])
-    return write_dataset(tmp_path / "images", pictures)
 
 
 def test_faults_are_recorded_as_by_the_local_engine(
@@ -190,24 +191,21 @@ def test_faults_are_recorded_as_by_the_local_engine(
 
 
 def test_what_takes_workers_down_is_named(
-    cluster: Cluster, faulty: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    faulty: Dataset, healthy: Callable[[str], Rows], tmp_path: Path
 ) -> None:
-    other = Cluster(tmp_path / "strict", {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"})
-    other.folder.mkdir()
+    strict = Cluster(tmp_path, {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"})
     combinations = "KILL_PARENT-ORB-HAM-BF,ORB-ORB-HAM-BF"
     try:
-        other.start()
+        strict.start()
         for _ in range(2):
-            other.add_worker("--nanny")
-        with connected(other.address) as client:
+            strict.add_worker("--nanny")
+        with connected(strict.address) as client:
             rows = rows_of(
                 run(faulty, combinations, tmp_path / "dask", engine=DaskEngine(client)).table()
             )
     finally:
-        other.stop()
-    monkeypatch.setenv(HEALTHY, "1")
-    healthy = run(faulty, combinations, tmp_path / "healthy", engine=InlineEngine())
-    expected = rows_of(healthy.table())
+        strict.stop()
+    expected = healthy(combinations)
     guilty = {n for n, r in rows.items() if r["detector"] == "KILL_PARENT" and r["pair"] in (1, 2)}
     for name in guilty:
         assert rows[name]["status"] == "crashed"
@@ -265,7 +263,7 @@ def test_exclusive_times_of_one_machine_are_taken_one_at_a_time(
     with connected(cluster.address) as client:
         client.wait_for_workers(2)
         engine = DaskEngine(client)
-        combinations = f"{FEW},KAZE-KAZE-L2-BF,BRISK-BRISK-HAM-BF,AKAZE-AKAZE-HAM-BF"
+        combinations = "ORB-ORB-HAM-*,FAST-ORB-HAM-BF,BRISK-BRISK-HAM-BF,AKAZE-AKAZE-HAM-BF"
         table = run(views, combinations, tmp_path / "r", timing="exclusive", engine=engine).table()
     assert set(table["timing"]) == {"exclusive"}
     assert table["peak_memory_mb"].null_count() < len(table)
