@@ -11,12 +11,15 @@ import polars as pl
 import pytest
 from numpy.typing import NDArray
 
-import aerocues
 from aerocues.datasets.dataset import Dataset
 from aerocues.errors import ImageError
+from aerocues.evaluation import run as running
+from tests.evaluation.inline import InlineEngine
+from tests.evaluation.scenes import PLAIN
 from tests.made_once import made_once
 from tests.reconstruction.scenes import write_scene
 
+run = partial(running.run, engine=InlineEngine(), timing="shared")
 pytestmark = pytest.mark.slow
 
 PAIRS = [("view_0.png", "view_1.png")]
@@ -44,7 +47,7 @@ def rows(views: Dataset, tmp_path_factory: pytest.TempPathFactory) -> pl.DataFra
     combinations = "SIFT-SIFT-L2-BF,ORB-ORB-HAM-BF,STAR-LATCH-HAM-BF"
 
     def make(folder: Path) -> pl.DataFrame:
-        return aerocues.run(views, combinations, folder).table().sort("detector")
+        return run(views, combinations, folder).table().sort("detector")
 
     return made_once(tmp_path_factory, "compared-with-truth", make)[1]
 
@@ -78,19 +81,19 @@ def test_without_depth_the_pose_alone_is_compared(views: Dataset, tmp_path: Path
         for image in views.images
     ]
     without = replace(views, images=images)
-    row = aerocues.run(without, "SIFT-SIFT-L2-BF", tmp_path / "out").table().row(0, named=True)
+    row = run(without, "SIFT-SIFT-L2-BF", tmp_path / "out", preset=PLAIN).table().row(0, named=True)
     assert row["pose_error"] < 3
     assert row["gt_precision@3"] is None
     assert row["gt_repeatability"] is None
 
 
 def test_another_truth_is_another_measurement(views: Dataset, tmp_path: Path) -> None:
-    first = aerocues.run(views, "ORB-ORB-HAM-BF", tmp_path / "out").table().row(0, named=True)
+    first = run(views, "ORB-ORB-HAM-BF", tmp_path / "out", preset=PLAIN).table().row(0, named=True)
     view = views.images[1].truth
     assert view is not None
     moved = replace(views.images[1], truth=replace(view, centre=view.centre + np.array([0, 3, 0])))
     other = replace(views, images=[views.images[0], moved])
-    again = aerocues.run(other, "ORB-ORB-HAM-BF", tmp_path / "out").table().row(0, named=True)
+    again = run(other, "ORB-ORB-HAM-BF", tmp_path / "out", preset=PLAIN).table().row(0, named=True)
     assert again["row_key"] != first["row_key"]
     assert again["inliers"] == first["inliers"]
     assert again["pose_error"] > first["pose_error"] + 10
@@ -101,6 +104,6 @@ def test_depth_that_cannot_be_read_is_an_error_of_its_rows(views: Dataset, tmp_p
     assert view is not None
     broken = replace(views.images[1], truth=replace(view, depth=Gone()))
     dataset = replace(views, images=[views.images[0], broken])
-    row = aerocues.run(dataset, "ORB-ORB-HAM-BF", tmp_path / "out").table().row(0, named=True)
+    row = run(dataset, "ORB-ORB-HAM-BF", tmp_path / "out", preset=PLAIN).table().row(0, named=True)
     assert row["status"] == "error"
     assert "the depth is gone" in row["message"]
