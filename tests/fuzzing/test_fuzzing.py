@@ -47,7 +47,7 @@ class Kind:
     name: str
     content: Callable[[Path], bytes]
     read: Callable[[Path], object]
-    count: int = 120
+    count: int = 60
 
 
 def store_file(name: str) -> Callable[[Path], bytes]:
@@ -201,7 +201,7 @@ KINDS = {
     "plan": Kind("plan.parquet", store_file("plan.parquet"), read_folder),
     "models": Kind("reconstructions.parquet", store_file("reconstructions.parquet"), read_folder),
     "part": Kind("parts/part.parquet", store_file("parts/part.parquet"), read_folder),
-    "older part": Kind("parts/part.parquet", without_checksum, read_folder, 300),
+    "older part": Kind("parts/part.parquet", without_checksum, read_folder, 120),
     "packed": Kind("packed.zip", packed, lambda file: Results(file).status()),
     "cloud": Kind("cloud.npz", cloud, lambda file: read_cloud(file.read_bytes(), file)),
     "preset": Kind("p.json", text(PRESET), lambda file: preset_named(str(file))),
@@ -210,8 +210,8 @@ KINDS = {
     "mission": Kind("m.json", text(MISSION), read_mission),
     "journal": Kind("race.json", text(RACE), replay),
     "pairs": Kind("p.txt", text('a.jpg b.jpg # c\n"b c.jpg"\ta.jpg\n'), read_pairs),
-    "homography": Kind("H", text("1.5e0, 0 0 # c\n0 2 0\n[1e-4 0 1]\n"), read_homography, 800),
-    "table": Kind("t.csv", text(table(6)), import_table, 300),
+    "homography": Kind("H", text("1.5e0, 0 0 # c\n0 2 0\n[1e-4 0 1]\n"), read_homography, 400),
+    "table": Kind("t.csv", text(table(6)), import_table, 120),
     "models of others": Kind(
         "m.csv",
         text(
