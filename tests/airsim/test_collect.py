@@ -71,9 +71,7 @@ def test_a_survey_is_collected_with_its_truth(tmp_path: Path, flavour: str, told
 @pytest.mark.slow
 def test_what_the_embedded_renderer_shows_is_what_it_would_have_written(tmp_path: Path) -> None:
     settings = Settings(width=60, height=40)
-    # From low above, so that the scene is small.
-    poses = (Pose(0, 0, -20, -90, 0), Pose(4, 2, -20, -75, 10))
-    survey = Survey("two", tuple(Shot(f"Layer1/{i:03d}", pose) for i, pose in enumerate(poses)))
+    survey = Survey("two", SURVEY.shots[:2])
     assert fly(tmp_path / "own", survey, settings) == Flown(2, 0)
     # The same scene behind the protocol; each image has the noise of its number.
     from aerocues.simulation.flight import _half
