@@ -81,9 +81,13 @@ def open_report(browser: Browser, report: Path) -> Iterator[Callable[..., Opened
     """Opens reports; at the end none may have failed, or asked for anything outside its file."""
     all_opened: list[Opened] = []
 
-    def open_one(fragment: str = "", file: Path | None = None, **context: Any) -> Opened:
+    def open_one(
+        fragment: str = "", file: Path | None = None, *, plotly: bool = True, **context: Any
+    ) -> Opened:
         settings = {"viewport": {"width": 1280, "height": 900}, "accept_downloads": True}
         page = browser.new_context(**{**settings, **context}).new_page()
+        if not plotly:  # two of three seconds of a page go into its figures
+            page.add_init_script("delete window.DecompressionStream")
         opened = Opened(page)
         page.on("pageerror", lambda error: opened.faults.append(f"error: {error}"))
         page.on(

@@ -40,7 +40,7 @@ def test_axe_finds_nothing_serious(open_report: Open, scheme: str, width: int) -
 
 
 def test_the_page_is_used_by_keyboard(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.keyboard.press("Tab")
     assert opened.page.evaluate("document.activeElement.className") == "skip"
     opened.page.focus("#filter")
@@ -68,7 +68,7 @@ def _wait_for_theme(opened: Opened, theme: str) -> None:
 
 
 def test_light_and_dark_follow_the_system_until_chosen(open_report: Open) -> None:
-    opened = open_report(color_scheme="dark")
+    opened = open_report(color_scheme="dark", plotly=False)
     _wait_for_theme(opened, "dark")
     opened.page.emulate_media(color_scheme="light")
     _wait_for_theme(opened, "light")

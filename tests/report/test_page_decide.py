@@ -19,7 +19,7 @@ def _taken(opened: Opened) -> str:
 
 
 def test_a_purpose_and_weights_rank_anew(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     assert _taken(opened) == "SIFT-SIFT-L2-BF"
     opened.page.click('[data-purpose="memory"]')
     assert opened.fragment() == "decide.purpose=memory"
@@ -35,7 +35,7 @@ def test_a_purpose_and_weights_rank_anew(open_report: Open) -> None:
 
 
 def test_the_answer_can_be_copied(open_report: Open) -> None:
-    opened = open_report(permissions=["clipboard-read", "clipboard-write"])
+    opened = open_report(permissions=["clipboard-read", "clipboard-write"], plotly=False)
     opened.page.click("text=Copy command")
     opened.page.wait_for_selector("text=Copied")
     command = "aerocues use SIFT-SIFT-L2-BF --as python -o sift_sift_l2_bf.py"

@@ -116,7 +116,7 @@ def test_damage_of_plotly_is_not_called_an_old_browser(
 
 
 def test_limits_keep_what_is_between_them_and_the_worst(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     scores = opened.page.evaluate("JSON.parse(payload.textContent).entries[0].score.score")
     inside = [name for name, score in zip(NAMES, scores, strict=True) if 0.3 <= score <= 0.6]
     opened.page.click("#limits-summary")
@@ -131,7 +131,7 @@ def test_limits_keep_what_is_between_them_and_the_worst(open_report: Open) -> No
 
 
 def test_clouds_fly_to_a_camera_and_are_saved(open_report: Open, tmp_path: Path) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     canvas = opened.page.locator("#clouds canvas").first
     before = canvas.evaluate("each => each.toDataURL()")

@@ -29,7 +29,7 @@ def pixels(opened: Opened, side: str = "left") -> str:
 
 def test_models_are_in_the_order_of_the_data(open_report: Open) -> None:
     """Which is that of `best_first`."""
-    opened = open_report()
+    opened = open_report(plotly=False)
     assert rows(opened) == names_of()
     assert names_of()[0] == REFERENCE
     assert HARMFUL in opened.page.inner_text(TABLE)
@@ -37,7 +37,7 @@ def test_models_are_in_the_order_of_the_data(open_report: Open) -> None:
 
 
 def test_the_table_is_sorted_filtered_and_saved(open_report: Open, tmp_path: Path) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.click(f'{TABLE} th[data-key="points_3d"] button')
     assert "models.sort=-points_3d" in opened.fragment()
     opened.page.click(f'{TABLE} th[data-key="points_3d"] button')
@@ -55,7 +55,7 @@ def test_the_table_is_sorted_filtered_and_saved(open_report: Open, tmp_path: Pat
 
 
 def test_clouds_are_turned_together(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     before = [pixels(opened, side) for side in ("left", "right")]
     opened.page.focus("canvas[data-side=left]")
@@ -78,7 +78,7 @@ def test_clouds_are_turned_together(open_report: Open) -> None:
 
 
 def test_clouds_turn_by_themselves_only_when_asked(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     still = pixels(opened)
     opened.page.evaluate("new Promise(done => { requestAnimationFrame(() => setTimeout(done)); })")
@@ -94,7 +94,7 @@ def test_clouds_turn_by_themselves_only_when_asked(open_report: Open) -> None:
 
 @pytest.mark.parametrize("colour", ["height", "distance", "error", "track"])
 def test_points_are_coloured_by_what_is_asked(open_report: Open, colour: str) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     before = pixels(opened)
     assert opened.page.locator(".cloud-legend").is_hidden()
@@ -105,7 +105,7 @@ def test_points_are_coloured_by_what_is_asked(open_report: Open, colour: str) ->
 
 
 def test_layers_and_choice_stand_in_the_address(open_report: Open) -> None:
-    opened = open_report(f"#cloud.left={CLOUDS[2]}&cloud.cameras=no")
+    opened = open_report(f"#cloud.left={CLOUDS[2]}&cloud.cameras=no", plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     titles = opened.page.locator(".panel-of-cloud h4").all_inner_texts()
     assert titles == [CLOUDS[2], CLOUDS[1]]
@@ -121,7 +121,7 @@ def test_layers_and_choice_stand_in_the_address(open_report: Open) -> None:
 
 
 def test_a_cloud_is_saved_as_a_picture(open_report: Open, tmp_path: Path) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     with opened.page.expect_download() as download:
         opened.page.get_by_label("Save the left cloud as PNG").click()
@@ -143,7 +143,7 @@ def test_relations_follow_the_measure(open_report: Open) -> None:
 
 @pytest.mark.slow
 def test_clouds_are_light_on_paper(open_report: Open) -> None:
-    opened = open_report(color_scheme="dark")
+    opened = open_report(color_scheme="dark", plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
     corner = (
         "[...document.querySelector('canvas[data-side=left]').getContext('2d')"
@@ -157,6 +157,6 @@ def test_clouds_are_light_on_paper(open_report: Open) -> None:
 
 
 def test_who_wants_no_motion_is_offered_none(open_report: Open) -> None:
-    opened = open_report(reduced_motion="reduce")
+    opened = open_report(reduced_motion="reduce", plotly=False)
     assert opened.page.locator("#turn-clouds").is_hidden()
     assert opened.page.get_by_role("button", name="Turn to the left").is_visible()

@@ -39,7 +39,7 @@ def test_a_run_with_pictures(open_report: Open, finished: Results, tmp_path: Pat
 @pytest.mark.slow
 def test_two_machines(open_report: Open, two_machines: list[Results], tmp_path: Path) -> None:
     page = aerocues.write_report(two_machines, tmp_path / "page.html", resamples=50)
-    opened = open_report(file=page)
+    opened = open_report(file=page, plotly=False)
     assert draw_all(opened)
     assert "flight (board)" in opened.page.inner_text("body")
 
@@ -48,6 +48,6 @@ def test_two_machines(open_report: Open, two_machines: list[Results], tmp_path: 
 def test_one_combination_on_one_pair(open_report: Open, tmp_path: Path) -> None:
     results = folder_of(measured(combinations=COMBINATIONS[:1], pairs=1), tmp_path)
     page = aerocues.write_report(results, tmp_path / "page.html", resamples=50)
-    opened = open_report(file=page)
+    opened = open_report(file=page, plotly=False)
     draw_all(opened)
     assert opened.rows() == list(COMBINATIONS[:1])

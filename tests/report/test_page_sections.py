@@ -52,7 +52,7 @@ def test_nothing_is_wider_than_the_window(open_report: Open, width: int) -> None
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_table_that_goes_on_has_a_shadow_at_its_edge(open_report: Open, scheme: str) -> None:
-    opened = open_report(viewport={"width": 500, "height": 900}, color_scheme=scheme)
+    opened = open_report(viewport={"width": 500, "height": 900}, color_scheme=scheme, plotly=False)
     table = opened.page.locator("#ranking").locator("xpath=ancestor::*[@class='scroll']")
     before = _right_edge(table.screenshot())
     table.evaluate("each => { each.scrollLeft = each.scrollWidth; }")
@@ -67,7 +67,7 @@ def _right_edge(picture: bytes) -> float:
 
 
 def test_the_answer_comes_first(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     words = opened.page.inner_text("#verdict")
     assert re.search(
         r"^Take SIFT-SIFT-L2-BF\b.*\b80\s%.* 1,000 resamples .* 8 pairs; 2 others", words, re.S
@@ -80,7 +80,7 @@ def test_the_answer_comes_first(open_report: Open) -> None:
 
 
 def test_the_table_is_sorted_by_its_headings(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     assert opened.rows()[0] == "SIFT-SIFT-L2-BF"
     heading = '#ranking th[data-key="combination"]'
     opened.page.click(f"{heading} button")
@@ -95,7 +95,7 @@ def test_the_table_is_sorted_by_its_headings(open_report: Open) -> None:
 
 
 def test_columns_are_chosen(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     opened.page.get_by_text("Columns", exact=True).first.click()
     opened.page.get_by_label("Detector", exact=True).check()
     assert opened.page.locator('#ranking th[data-key="detector"]').count() == 1
@@ -112,7 +112,7 @@ def _saved(opened: Opened, click: str) -> tuple[str, bytes]:
 
 
 def test_the_table_is_saved_as_it_is_filtered(open_report: Open) -> None:
-    opened = open_report("#q=daisy&sort=-combination")
+    opened = open_report("#q=daisy&sort=-combination", plotly=False)
     name, content = _saved(opened, "#save-ranking")
     rows = list(csv.DictReader(io.StringIO(content.decode())))
     assert name.endswith("ranking.csv")
@@ -136,7 +136,7 @@ def test_figures_are_saved(open_report: Open) -> None:
 
 
 def test_matches_are_drawn_and_counted(open_report: Open) -> None:
-    opened = open_report()
+    opened = open_report(plotly=False)
     panel = opened.page.locator(".panel-of-matches").first
     panel.scroll_into_view_if_needed()
     wrong = "10 inliers, of which 5 are wrong by the reference"
