@@ -29,13 +29,16 @@ def _violations(opened: Opened) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
-def test_axe_finds_nothing_serious(open_report: Open, scheme: str, width: int) -> None:
+def test_axe_finds_nothing_serious_and_nothing_is_wider_than_the_window(
+    open_report: Open, scheme: str, width: int
+) -> None:
     opened = open_report("#q=sift", viewport={"width": width, "height": 900}, color_scheme=scheme)
     opened.page.click("#methods-summary")
     for summary in opened.page.locator("#sections summary").all():
         summary.click()
     for name in FIGURES:
         opened.figure(name)
+    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
     assert _violations(opened) == []
 
 
