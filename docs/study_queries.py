@@ -59,14 +59,20 @@ def rank_correlation(first: pl.DataFrame, second: pl.DataFrame) -> str:
 
 
 def in_common(thesis: pl.DataFrame, tuned: pl.DataFrame) -> tuple[str, ...]:
-    """Means of two runs over the combinations and pairs that both measured."""
+    """Means of two runs over the combinations and pairs that both measured, by the truth.
+
+    The preset of the thesis knows no other right matches. Empty where there is no truth.
+    """
     keys = ["pair", "detector", "descriptor", "norm", "matcher"]
-    figures = ("ref_matches@3", "ref_precision@3")
-    names = [name for figure in figures for name in (figure, f"{figure}_right")]
-    both = thesis.select(*keys, *figures).join(tuned.select(*keys, *figures), on=keys)
-    means = both.select(pl.col(names).fill_null(0).mean()).row(0)
+    share = pl.col("gt_precision@3")
+    figures = (share * pl.col("matches")).alias("right"), share.alias("share")
+    first, second = (each.select(*keys, *figures).drop_nulls() for each in (thesis, tuned))
+    both = first.join(second, on=keys)
+    if both.is_empty():
+        return ()
+    means = both.select(pl.col("right", "right_right", "share", "share_right").mean()).row(0)
     number = both.select(keys[1:]).n_unique()
-    return (str(number), *(f"{m:.0f}" for m in means[:2]), *(f"{m:.2f}" for m in means[2:]))
+    return (str(number), *(f"{m:,.0f}" for m in means[:2]), *(f"{m:.2f}" for m in means[2:]))
 
 
 def markdown(lines: Sequence[Sequence[str]]) -> str:

@@ -77,11 +77,12 @@ class Tables(Parts):
         right, share = "right matches a pair", "their share of all"
         heads = (f"{right}: thesis", "tuned", f"{share}: thesis", "tuned")
         lines: list[tuple[str, ...]] = [("images", "combinations", *heads)]
-        for images in ("synthetic", "oxford", "uav"):
+        for images in ("synthetic", "oxford"):
             names = [f"{images}-thesis", f"{images}-tuned"]
             if set(names) <= set(self.names):
                 thesis, tuned = (each.table() for each in self.results(names))
-                lines.append((images, *in_common(thesis, tuned)))
+                if found := in_common(thesis, tuned):
+                    lines.append((images, *found))
         return markdown(lines) if lines[1:] else NOT_YET
 
     def learned(self) -> str:

@@ -19,7 +19,7 @@ from aerocues.results.schema import empty_row, polars_schema
 from aerocues.results.study import add_part
 from docs.study import PAGES, Findings, rendered
 from docs.study_parts import DATABASE, NOT_YET
-from docs.study_queries import QUERIES, console
+from docs.study_queries import QUERIES, console, in_common
 from tests.cli.conftest import Call
 from tests.made_once import made_once
 from tests.test_documentation import REPOSITORY, blocks
@@ -28,7 +28,7 @@ PAGE = REPOSITORY / "docs" / "study.md"
 NAMES = ("brighton-flown-tuned", "uav-thesis", "uav-tuned", "uav-learned", "mini-1000", "mini-4000")
 
 FINISHED = {"leaders": {"finished": "all"}}
-NEED_MORE = ("binary", "extra", "flann", "oblique", "predictors", "turned")
+NEED_MORE = ("binary", "extra", "flann", "oblique", "predictors", "presets", "turned")
 """Statements for which the few rows of the tests do not suffice."""
 
 
@@ -90,6 +90,19 @@ def test_each_statement_is_made_of_rows_that_are_there(
     assert NOT_YET in without_rows
     if name not in NEED_MORE:
         assert filled != without_rows
+
+
+def test_presets_are_compared_by_the_truth_on_what_both_measured() -> None:
+    """By hand: pair 0 alone is in both with a known truth."""
+
+    def rows(matches: list[int], shares: list[float | None]) -> pl.DataFrame:
+        names = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
+        figures = {"pair": range(len(matches)), "matches": matches, "gt_precision@3": shares}
+        return pl.DataFrame(figures).with_columns(**{k: pl.lit(v) for k, v in names.items()})
+
+    thesis, tuned = rows([4000, 10, 10], [0.5, None, 1.0]), rows([1000, 10], [0.75, 1.0])
+    assert in_common(thesis, tuned) == ("1", "2,000", "750", "0.50", "0.75")
+    assert in_common(thesis, rows([5], [None])) == ()
 
 
 def test_a_broken_database_is_not_an_empty_one(stand_in: Path, tmp_path: Path) -> None:
