@@ -58,7 +58,7 @@ def test_an_axis_of_near_values_has_ticks(open_report: Open, doubtful: Path) -> 
 def test_the_contents_follow_on_a_phone(open_report: Open) -> None:
     opened = open_report(viewport={"width": 390, "height": 800}, plotly=False)
     opened.page.evaluate("document.querySelector('#method').scrollIntoView()")
-    opened.page.wait_for_function("document.querySelector('#contents').scrollLeft > 0")
+    opened.page.wait_for_function("() => document.querySelector('#contents').scrollLeft > 0")
     link = opened.page.locator('#contents a[href="#method"]')
     box = link.bounding_box()
     assert box is not None
