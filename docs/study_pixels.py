@@ -5,6 +5,7 @@ from __future__ import annotations
 import polars as pl
 
 import aerocues
+from aerocues.results.combination_columns import combination_name
 from docs.study_queries import markdown, rank_correlation
 
 WIDTHS = ("1,000", "4,000")
@@ -36,7 +37,7 @@ def _ranks(ranked: list[pl.DataFrame], both: tuple[aerocues.Results, aerocues.Re
     own = [frame.select("combination", "rank") for frame in ranked]
     figures = [
         each.table()
-        .group_by(_combination())
+        .group_by(combination_name())
         .agg(
             pl.col("ref_precision@3").fill_null(0).mean().alias("right"),
             pl.col("total_seconds").median().alias("seconds"),
@@ -61,7 +62,9 @@ def _models(small: aerocues.Results, large: aerocues.Results) -> tuple[str, ...]
     frames = [each.reconstructions() for each in (small, large)]
     if any(frame.is_empty() for frame in frames):
         return ()
-    frames = [frame.filter(status="ok").select(_combination(), *MODEL_FIGURES) for frame in frames]
+    frames = [
+        frame.filter(status="ok").select(combination_name(), *MODEL_FIGURES) for frame in frames
+    ]
     joined = frames[0].join(frames[1], on="combination", suffix="_large")
     heads = [f"{label} at {size}" for label, _ in MODEL_FIGURES.values() for size in SIZES]
     lines = [("model", *heads)]
@@ -77,10 +80,3 @@ def _models(small: aerocues.Results, large: aerocues.Results) -> tuple[str, ...]
 
 def _told(value: float | None, style: str) -> str:
     return "" if value is None else f"{value:{style}}"
-
-
-def _combination() -> pl.Expr:
-    """The name of a combination, from the columns of its methods."""
-    return pl.concat_str("detector", "descriptor", "norm", "matcher", separator="-").alias(
-        "combination"
-    )

@@ -36,7 +36,7 @@ def found(photos: Path, chances: Sequence[float], unseen: tuple[int, ...] = ()) 
         np.array(chances),
         np.ones((len(names), 3), np.bool_),
         "measured",
-        [Round(61.0, 9, 1, names[0], chances[0])],
+        [Round(61.0, 9, 1, names, chances[0])],
     )
     return Recommendation(
         open_dataset(str(photos)),
@@ -58,6 +58,14 @@ def test_the_only_one_that_succeeded_is_compared_with_nothing(photos: Path) -> N
     assert "median" not in words
     several = " ".join(answer(found(photos, [0.7, 0.3])).split())
     assert re.search(r"median of the 2 successful combinations .* 0\b", several)
+
+
+@pytest.mark.parametrize(("width", "told"), [(0, False), (1000, True), (4000, False)])
+def test_what_larger_images_may_change_is_told_where_it_applies(
+    width: int, told: bool, photos: Path
+) -> None:
+    words = " ".join(answer(found(photos, [1.0]), width).split())
+    assert ("measured on images of 1,000 px" in words) is told
 
 
 def test_a_probability_is_of_these_pairs_and_never_certain(photos: Path) -> None:

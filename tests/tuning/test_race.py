@@ -92,7 +92,7 @@ def test_a_clear_winner_ends_the_race() -> None:
     assert outcome.ended == "sure"
     assert place.spent < place.total
     assert outcome.rounds[-1].probability >= 0.9
-    assert outcome.rounds[-1].leader == place.alternatives[outcome.order[0]]
+    assert outcome.rounds[-1].ranked[0] == place.alternatives[outcome.order[0]]
 
 
 @pytest.mark.slow

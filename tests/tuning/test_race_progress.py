@@ -74,6 +74,6 @@ def test_every_event_tells_when_the_time_is_up_and_rounds_tell_the_leader() -> N
     tell.preparing("surveying the flight", "images")(1, 10)
     tell.resumed(5.0)
     tell.racing(10, 4)
-    tell.round(Round(20.0, 12, 4, "GFTT_H-TEBLID-HAM-FLANN", 0.61))
+    tell.round(Round(20.0, 12, 4, ["GFTT_H-TEBLID-HAM-FLANN"], 0.61))
     assert [event.ends for event in events] == [160.0, 160.0, 155.0, 155.0]
     assert events[-1].standing == "GFTT_H-TEBLID-HAM-FLANN leads (61%), 4 still in the race"

@@ -39,7 +39,7 @@ ENDS = {
 def answer(found: Recommendation, shrunk: int = 0) -> str:
     """The best combination, its probability, the reasons and the cost.
 
-    `shrunk` is the width to which the images were shrunk, 0 for images as they are.
+    `shrunk` is the width to which wider images are shrunk, 0 for images as they are.
     """
     final, best = found.final, found.ranked.row(0, named=True)
     parts = [
@@ -196,12 +196,12 @@ def _notes(found: Recommendation) -> list[str]:
 
 
 def _width(shrunk: int) -> list[str]:
-    if not shrunk:
-        return []
     small, large = STUDIED_WIDTHS
+    if not 0 < shrunk < large:
+        return []
     return [
-        f"the images were shrunk to {shrunk:,} px; if you reconstruct larger ones, the order may "
-        f"be another: on a studied flight, scores at {small:,} and {large:,} px correlate to "
+        f"measured on images of {shrunk:,} px; if you reconstruct larger ones, the order may be "
+        f"another: on a studied flight, scores at {small:,} and {large:,} px correlate to "
         f"{STUDIED_AGREEMENT}, and the best at {small:,} px has place {STUDIED_PLACE} at "
         f"{large:,} px; --max-width {large} measures there"
     ]
@@ -252,7 +252,7 @@ def story(outcome: RaceOutcome) -> Table:
     table = plain_table("leader", *headings, numbers=len(headings))
     for each in outcome.rounds:
         table.add_row(
-            each.leader,
+            each.ranked[0],
             f"{each.spent:.0f}",
             f"{each.measured:,}",
             f"{each.contenders}",

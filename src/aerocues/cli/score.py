@@ -212,10 +212,10 @@ def _for_purpose(
 
 
 def _write(ranking: Ranking, targets: dict[str, str | None], top: int, columns: str | None) -> None:
-    frame = ranking.frame("combination")
-    criteria = ranking.scores.table.criterion_names
     from aerocues.scoring.settings import names_of
 
+    frame = ranking.frame("combination")
+    criteria = ranking.scores.table.criterion_names
     names = names_of(columns) if columns else [*PRINTED, "success_rate", *criteria]
     for name in names:
         check_choice("columns", name, frame.columns)

@@ -85,7 +85,9 @@ def build_final(
     asked = tuple(dict.fromkeys(exactly_matched(each) for each in leaders))
     pixels = survey_image(dataset.images).read().bgr
     most = affordable_images(
-        *(len(dataset.images), seconds, slowness_of(rows)),
+        len(dataset.images),
+        seconds,
+        slowness_of(rows),
         megapixels=pixels.shape[0] * pixels.shape[1] / 1e6,
         max_keypoints=max_keypoints,
     )

@@ -93,18 +93,17 @@ class Round:
         Seconds, and cells.
     contenders : int
         Alternatives that are among the `FEW` best in at least one drawn table.
-    leader, probability : str, float
-        Alternative with the highest expected score, and the share of the drawn tables that it wins.
     ranked : sequence of str
-        All alternatives, the best first.
+        All alternatives, the highest expected score first.
+    probability : float
+        Share of the drawn tables that the first of them wins.
     """
 
     spent: float
     measured: int
     contenders: int
-    leader: str
+    ranked: Sequence[str]
     probability: float
-    ranked: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,8 +212,8 @@ class _Race:
 
     def _report(self, scores: Array, chance: float, contenders: int) -> None:
         ranked = [self._evaluator.alternatives[each] for each in np.argsort(-scores, kind="stable")]
-        figures = self._evaluator.spent, int(self._known.sum()), contenders
-        self._rounds.append(Round(*figures, ranked[0], chance, ranked))
+        spent, measured = self._evaluator.spent, int(self._known.sum())
+        self._rounds.append(Round(spent, measured, contenders, ranked, chance))
         self._on_round(self._rounds[-1])
 
     def _ended(self, leader: int, chance: float, interest: Array, *, more: bool) -> Ended | None:

@@ -130,7 +130,7 @@ class RaceProgress:
     def round(self, finished: Round) -> None:
         """A round is over."""
         standing = (
-            f"{finished.leader} leads ({likelihood(finished.probability)}), "
+            f"{finished.ranked[0]} leads ({likelihood(finished.probability)}), "
             f"{finished.contenders} still in the race"
         )
         share = min(finished.spent / self._budget, 1.0)
