@@ -8,6 +8,7 @@ import pytest
 
 import aerocues
 from aerocues.datasets.dataset import Dataset
+from aerocues.reconstruction import engine
 from aerocues.reconstruction.models import Models
 from tests.made_once import made_once
 from tests.reconstruction.scenes import Options, write_scene
@@ -43,3 +44,9 @@ def quick() -> Options:
 def empty(tmp_path: Path) -> Path:
     """Where models may go."""
     return tmp_path / "models"
+
+
+@pytest.fixture
+def watched_closely(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes looked at so often that no stage ends unseen, however fast the machine is."""
+    monkeypatch.setattr(engine, "POLL_SECONDS", 0.005)

@@ -124,12 +124,12 @@ def test_methods_that_go_wrong_are_named_and_the_rest_goes_on(
 
 
 def test_a_stage_that_takes_too_long_is_ended(
-    landscape: Dataset, quick: Options, empty: Path
+    landscape: Dataset, quick: Options, empty: Path, watched_closely: None
 ) -> None:
-    options = {**quick, "timeout": 0.05}
+    options = {**quick, "timeout": 0.02}
     row = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert row["status"] == "timeout"
-    assert "0.05 CPU seconds" in row["message"]
+    assert "0.02 CPU seconds" in row["message"]
     same = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert same["reconstructed_at"] == row["reconstructed_at"]
     # With more time it is tried again by itself.

@@ -196,11 +196,11 @@ def test_models_do_not_mix_with_other_files(landscape: Dataset, empty: Path) -> 
 
 
 def test_a_failure_leaves_nothing_of_an_earlier_model(
-    models: Models, landscape: Dataset, quick: Options, tmp_path: Path
+    models: Models, landscape: Dataset, quick: Options, tmp_path: Path, watched_closely: None
 ) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(models.folder, copy)
-    options = {**quick, "max_keypoints": 999, "timeout": 0.3}
+    options = {**quick, "max_keypoints": 999, "timeout": 0.02}
     failed = aerocues.reconstruct(landscape, SIFT, copy, **options)
     row = row_of(failed, SIFT)
     assert row["status"] == "timeout"
