@@ -85,6 +85,7 @@ def test_models_from_results_and_figures_into_them(
     assert Results(results).reconstructions()["max_keypoints"].to_list() == [400]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -12,6 +12,7 @@ from tests.report.decoding import payload_in
 from tests.report.made_up import folder_of, measured
 
 
+@pytest.mark.slow
 def test_a_page_is_written(
     call: Call, finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -162,6 +162,7 @@ def test_what_csv_cannot_hold_is_told_with_the_form_that_can(
     assert len(json.loads(call("results", finished, "--sql", query, "--json").out)) == 3
 
 
+@pytest.mark.slow
 def test_pairs_are_counted_by_their_images(call: Call, photos: Path, tmp_path: Path) -> None:
     words = ("-o", tmp_path / "results", "--combinations", "ORB-ORB-HAM-BF", "--workers", 1)
     file = tmp_path / "pairs.txt"

@@ -13,6 +13,7 @@ import aerocues
 from tests.cli.conftest import COMBINATIONS, Call
 
 
+@pytest.mark.slow
 def test_a_run_ends_with_the_best_and_what_to_do_next(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:
@@ -102,6 +103,7 @@ def gray_copy(photos: Path, folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_run_tells_what_gray_images_rule_out(call: Call, photos: Path, tmp_path: Path) -> None:
     gray = gray_copy(photos, tmp_path / "gray")
     words = ("run", gray, "-o", tmp_path / "results", "--workers", 1, "--max-pairs", 2)

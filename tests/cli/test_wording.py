@@ -76,6 +76,7 @@ def texts(file: Path) -> Iterator[str]:
             yield node.value
 
 
+@pytest.mark.slow
 def test_the_library_speaks_of_parameters_only() -> None:
     """Exports write commands of other tools."""
     elsewhere = {"cli", "exports"}

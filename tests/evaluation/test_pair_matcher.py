@@ -33,6 +33,7 @@ def following(monkeypatch: pytest.MonkeyPatch) -> None:
     aerocues.register("pair_matcher", "FOLLOW", "tests.methods.following:Follow")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("following")
 def test_it_is_measured_scored_and_drawn(views: Dataset, tmp_path: Path) -> None:
     results = aerocues.run(

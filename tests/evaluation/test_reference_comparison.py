@@ -76,6 +76,7 @@ def test_counts_and_costs_follow_from_the_shares(rows: pl.DataFrame) -> None:
     assert (rows["coverage"] <= 1).all()
 
 
+@pytest.mark.slow
 def test_relief_is_judged_without_its_depth(tmp_path: Path) -> None:
     pairs = [("view_0.png", "view_1.png")]
     dataset = write_scene(tmp_path / "views", [(-3.0, 0.0), (3.0, 0.0)], pairs=pairs)
@@ -129,6 +130,7 @@ def test_images_without_anything_in_common_have_no_figures(tmp_path: Path) -> No
         assert table[name].null_count() == len(table)
 
 
+@pytest.mark.slow
 def test_rows_that_failed_tell_of_the_reference_too(tmp_path: Path) -> None:
     pictures = strip(2)
     dataset = write_dataset(tmp_path / "images", pictures)
@@ -161,6 +163,7 @@ def test_the_thesis_asks_no_reference_and_keeps_its_keys(
     }
 
 
+@pytest.mark.slow
 def test_a_reference_is_built_once_for_all_units_and_runs(
     plane: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -66,6 +66,7 @@ def test_detectors_and_descriptors_narrow_down(methods: Methods) -> None:
     assert len(chosen) == 3 * 2 * 2
 
 
+@pytest.mark.slow
 @given(st.lists(TEXTS, min_size=1, max_size=5), st.lists(TEXTS, max_size=3))
 def test_full_names_select_exactly_themselves(wanted: list[str], unwanted: list[str]) -> None:
     patterns = [*wanted, *(f"!{text}" for text in unwanted)]

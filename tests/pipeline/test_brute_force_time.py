@@ -35,6 +35,7 @@ def test_estimated_times_leave_everything_else_as_it_is(
     assert estimated.table()["match_seconds"].min() > 0  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_estimated_times_do_not_stand_for_measured_ones(views: Dataset, tmp_path: Path) -> None:
     engine, folder = InlineEngine(), tmp_path / "r"
     run(views, "ORB-ORB-HAM-BF", folder, engine=engine, timing="estimated")

@@ -61,6 +61,7 @@ def test_a_torn_page_is_not_read(tmp_path: Path) -> None:
     assert reader.read() is None
 
 
+@pytest.mark.slow
 @given(st.text(max_size=3 * SIZE))
 def test_names_of_any_length_do_no_harm(name: str) -> None:
     import tempfile

@@ -49,6 +49,7 @@ def test_values_become_what_json_can_write(value: object, expected: object) -> N
     assert plain(value) == expected
 
 
+@pytest.mark.slow
 @given(st.recursive(st.floats() | st.integers() | st.text() | st.none(), st.lists))
 def test_anything_can_be_written_as_strict_json(value: object) -> None:
     json.dumps(plain(value), allow_nan=False)

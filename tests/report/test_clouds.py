@@ -135,6 +135,7 @@ def test_the_first_of_every_entry_come_before_the_second_of_any() -> None:
     assert fitting_clouds(found, 6 * size).notes == []
 
 
+@pytest.mark.slow
 def test_a_page_has_no_more_clouds_than_it_may(modelled: Results, tmp_path: Path) -> None:
     whole = aerocues.write_report(modelled, tmp_path / "whole.html", resamples=20)
     room = whole.stat().st_size - 10_000

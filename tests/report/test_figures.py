@@ -42,6 +42,7 @@ def test_every_figure_is_drawn_twice(tmp_path: Path) -> None:
             assert file.read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("scores_only")
 def test_the_same_data_give_the_same_files(flight: Results, tmp_path: Path) -> None:
     contents = []
@@ -52,6 +53,7 @@ def test_the_same_data_give_the_same_files(flight: Results, tmp_path: Path) -> N
     assert contents[0] == contents[1]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("scores_only")
 def test_several_entries_do_not_overwrite_each_other(
     two_machines: list[Results], tmp_path: Path

@@ -98,6 +98,7 @@ HELD = """
 """Holds back what is unpacked until the page is told to release it."""
 
 
+@pytest.mark.slow
 def test_paper_before_plotly_says_what_is_not_drawn(open_report: Open) -> None:
     opened = open_report()
     opened.page.add_init_script(HELD)

@@ -33,6 +33,7 @@ WORDS = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_words_keep_the_combinations_that_they_name(open_report: Open) -> None:
     opened = open_report(plotly=False)
     for words, kept in WORDS:
@@ -66,6 +67,7 @@ def test_chips_keep_any_of_a_kind_and_all_of_the_kinds(open_report: Open) -> Non
     assert opened.fragment() == ""
 
 
+@pytest.mark.slow
 def test_the_filter_reaches_figures(open_report: Open) -> None:
     opened = open_report()
     opened.figure("dots")
@@ -119,6 +121,7 @@ def test_nonsense_in_the_address_does_no_harm(open_report: Open) -> None:
     assert opened.page.input_value("#figure-heat select") == "score"
 
 
+@pytest.mark.slow
 def test_another_data_set_can_be_chosen(open_report: Open) -> None:
     opened = open_report()
     opened.page.select_option("#entry", "imported")

@@ -54,6 +54,7 @@ def test_the_table_is_sorted_filtered_and_saved(open_report: Open, tmp_path: Pat
     assert {"status", "points_3d", "message", "cloud_distance_rms"} <= set(saved[0])
 
 
+@pytest.mark.slow
 def test_clouds_are_turned_together(open_report: Open) -> None:
     opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()

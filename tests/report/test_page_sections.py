@@ -119,6 +119,7 @@ def test_the_table_is_saved_as_it_is_filtered(open_report: Open) -> None:
     assert 0 <= float(rows[0]["score_low"]) < float(rows[0]["score"]) < 1
 
 
+@pytest.mark.slow
 def test_figures_are_saved(open_report: Open) -> None:
     opened = open_report("#theme=dark")
     opened.figure("pareto")
@@ -149,6 +150,7 @@ def test_matches_are_drawn_and_counted(open_report: Open) -> None:
     panel.get_by_text("no picture").wait_for()
 
 
+@pytest.mark.slow
 def test_without_models_the_section_says_how_to_make_them(
     open_report: Open, tmp_path: Path
 ) -> None:

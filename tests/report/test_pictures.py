@@ -78,6 +78,7 @@ def test_another_detector_is_among_them(entry: ReportEntry) -> None:
     assert names[0].split("-")[0] != names[1].split("-")[0]
 
 
+@pytest.mark.slow
 def test_pictures_of_images_that_moved(
     photos: Path, tmp_path: Path, finished: Results, entry: ReportEntry
 ) -> None:
@@ -110,6 +111,7 @@ def test_images_that_are_gone(own: Results, tmp_path: Path) -> None:
     assert "no pictures" in payload["method"]["notes"][-1]
 
 
+@pytest.mark.slow
 def test_images_that_differ(own: Results, tmp_path: Path) -> None:
     for file in (tmp_path / "photos").iterdir():
         pixels = np.random.default_rng(0).integers(0, 255, (180, 240, 3), np.uint8)
@@ -188,6 +190,7 @@ def test_pictures_give_way_to_size() -> None:
     assert fitting(both, 0).pictures == []
 
 
+@pytest.mark.slow
 def test_the_page_stays_below_the_limit(finished: Results, tmp_path: Path) -> None:
     whole = aerocues.write_report(finished, tmp_path / "whole.html", resamples=50)
     limit = whole.stat().st_size / 1e6 - 0.02

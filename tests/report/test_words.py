@@ -7,6 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from aerocues.report.words import WORDS
 
 
@@ -24,6 +26,7 @@ def test_they_are_those_of_the_glossary(repository: Path) -> None:
     assert {word: meanings.get(word.lower()) for word in WORDS} == WORDS
 
 
+@pytest.mark.slow
 def test_a_word_is_explained_where_it_stands_first(open_report: Callable[..., Any]) -> None:
     page = open_report("#method").page
     [words] = page.locator("summary", has_text="Words (1)").all()

@@ -153,6 +153,7 @@ FREE = {
 }
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(values=st.fixed_dictionaries(FREE))
 def test_every_other_column_comes_back(

@@ -118,6 +118,7 @@ def test_nothing_lands_outside(
     assert list(temporary.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_damage_is_told(results: Results, tmp_path: Path, temporary: Path) -> None:
     file = results.pack(tmp_path / "packed.zip")
     whole = file.read_bytes()
@@ -137,6 +138,7 @@ def test_damage_is_told(results: Results, tmp_path: Path, temporary: Path) -> No
         assert list(temporary.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_an_archive_that_becomes_gigabytes_is_not_unpacked(
     results: Results, tmp_path: Path, temporary: Path
 ) -> None:

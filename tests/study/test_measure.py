@@ -145,6 +145,7 @@ def test_a_row_that_differs_is_found(measured: Path) -> None:
     assert len(differing(rows, other)) == 1
 
 
+@pytest.mark.slow
 def test_measured_again_it_is_identical(
     measured: Path,
     tmp_path: Path,
@@ -177,6 +178,7 @@ def test_measured_again_it_is_identical(
     assert "verified" not in study.facts("views")
 
 
+@pytest.mark.slow
 def test_an_interruption_stores_what_there_is(
     measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

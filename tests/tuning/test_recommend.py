@@ -34,6 +34,7 @@ def race(call: Call, photos: Path, output: Path, *more: object, names: str = SOM
     return call("recommend", photos, "-o", output, "--combinations", names, *ENOUGH, *more)
 
 
+@pytest.mark.slow
 def test_the_answer_says_what_how_sure_why_and_what_next(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:
