@@ -139,6 +139,7 @@ def test_a_run_that_ended_between_the_passes_has_rows_left_to_time(tmp_path: Pat
     assert (status.done, status.left, status.untimed) == (12, 0, 0)
 
 
+@pytest.mark.slow
 def test_rows_of_other_settings_in_the_folder_are_told(tmp_path: Path) -> None:
     dataset, engine = write_dataset(tmp_path / "images", strip(5)), InlineEngine()
     told: list[str] = []

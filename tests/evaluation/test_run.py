@@ -103,6 +103,7 @@ def test_a_changed_image_is_measured_again(tmp_path: Path) -> None:
     assert {name[1] for name in before if before[name] != after[name]} == {1}
 
 
+@pytest.mark.slow
 def test_another_seed_gives_a_table_of_its_own(views: Dataset, tmp_path: Path) -> None:
     run(views, "ORB-ORB-HAM-BF", tmp_path / "r", engine=InlineEngine())
     other = run(views, "ORB-ORB-HAM-BF", tmp_path / "r", seed=1, engine=InlineEngine())

@@ -20,6 +20,7 @@ def picture() -> NDArray[np.uint8]:
     return np.asarray(cv2.GaussianBlur(textured(), (0, 0), 1.5), np.uint8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turned", [False, True])
 def test_positions_have_no_shift(turned: bool) -> None:
     pytest.importorskip("pixelmap")

@@ -357,6 +357,7 @@ def is_zombie(number: int) -> bool:
         return True
 
 
+@pytest.mark.slow
 def test_what_was_said_is_remembered_until_files_change(
     install: Install, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

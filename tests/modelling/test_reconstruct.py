@@ -42,6 +42,7 @@ def test_thresholds_are_lowered_unless_it_is_told_otherwise(
     assert contrast(made(output=tmp_path / "thesis", preset="thesis")) == usual
 
 
+@pytest.mark.slow
 def test_after_the_deadline_nothing_is_made(landscape: Dataset, tmp_path: Path) -> None:
     options = ReconstructionOptions(workers=1, deadline=0.0)
     models = reconstruct_scene(landscape, SIFT, tmp_path / "models", options)

@@ -115,6 +115,7 @@ def test_what_decides_features_is_part_of_their_name(
     assert count.taken() == taken
 
 
+@pytest.mark.slow
 def test_damaged_files_are_made_again(
     views: Dataset, stored: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -82,6 +82,7 @@ def test_the_change_of_view_of_known_homographies() -> None:
     assert view_change(mirrored, (100, 80), (100, 80)) is None
 
 
+@pytest.mark.slow
 def test_candidates_by_gps_by_number_and_by_likeness() -> None:
     images = flight()
     nothing = [None] * 6

@@ -36,6 +36,7 @@ def drawn(entry: ReportEntry) -> Pictures:
     return pictures_of(entry, 2)
 
 
+@pytest.mark.slow
 def test_the_same_is_found_again(drawn: Pictures, entry: ReportEntry) -> None:
     assert drawn.notes == []
     assert len(drawn.pictures) >= 4

@@ -95,6 +95,7 @@ def arguments(folder: Path) -> list[str]:
     return [*words, "--workers", "1"]
 
 
+@pytest.mark.slow
 def test_the_database_holds_each_row_once(measured: Path) -> None:
     study = aerocues.Study(measured / "database")
     assert study.names == ("views",)

@@ -87,6 +87,7 @@ def test_what_is_measured_whole_is_scored_as_it_is() -> None:
     assert outcome.probability[outcome.order[0]] >= 0.95
 
 
+@pytest.mark.slow
 def test_a_clear_winner_ends_the_race() -> None:
     place, outcome = run(share=5.0, sure=0.9)
     assert outcome.ended == "sure"
