@@ -1,6 +1,7 @@
 """Do recommendations lead to the best models? Their place among all, and their regret.
 
     python benchmarks/outcome.py WORK [FLIGHT...] [--objectives NAMES] [--budget SECONDS]
+        [--width PIXELS] [--keypoints NUMBER]
 
 Five flights: brighton_beach as published and as flown, garfield_rgb (AEROCUES_SHARED_DATA) and two
 simulated surveys whose strips are turned against each other, one over fields. `COMBINATIONS` race
@@ -46,7 +47,6 @@ FEATURES = {
     "BRISK-BEBLID GFTT-BRIEF GFTT-BRISK FAST-BRIEF AGAST-BEBLID STAR-BRISK",
 }
 COMBINATIONS = [f"{each}-{norm}-EXACT" for norm, own in FEATURES.items() for each in own.split()]
-WIDTH, KEYPOINTS = 800, 2000
 BUDGET = 180.0
 """Wall seconds on an idle machine; give a busy one more."""
 CONSECUTIVE = 8
@@ -69,6 +69,18 @@ ACCURACY, TRACKS, POINTS = 0.4, 0.2, 0.4
 """Weights of the value of a model."""
 
 
+@dataclass(frozen=True)
+class Size:
+    """What all combinations are given."""
+
+    width: int = 800
+    keypoints: int = 2000
+
+    def opened(self, spec: str, **options: Any) -> Dataset:
+        """The images of a flight, shrunk."""
+        return aerocues.open_dataset(spec, max_width=self.width, **options)
+
+
 def flight(name: str, work: Path) -> str:
     """Where the images of a flight are; they are made where they are missing."""
     if name in SIMULATED:
@@ -89,23 +101,11 @@ def flight(name: str, work: Path) -> str:
     return f"flight:{folder}"
 
 
-def raced(spec: str, folder: Path, objective: str, budget: float) -> Recommendation:
-    """What is recommended for an objective, with its final."""
-    return aerocues.recommend(
-        aerocues.open_dataset(spec, max_width=WIDTH),
-        COMBINATIONS,
-        folder,
-        budget=budget,
-        objective=objective,
-        max_keypoints=KEYPOINTS,
-    )
-
-
-def built(found: Recommendation, dataset: Dataset) -> pl.DataFrame:
+def built(found: Recommendation, dataset: Dataset, keypoints: int) -> pl.DataFrame:
     """The models of all combinations under the settings of the final, the best first."""
     scene = scene_of_final(dataset, found.flight.survey if found.flight else None)
     options = ReconstructionOptions(
-        preset=found.preset, protocol=ReconstructionProtocol(max_keypoints=KEYPOINTS)
+        preset=found.preset, protocol=ReconstructionProtocol(max_keypoints=keypoints)
     )
     models = reconstruct_scene(
         *(scene, COMBINATIONS, found.folder / MODELS, options),
@@ -186,13 +186,11 @@ class Judge:
         }
 
 
-def old_rule(spec: str, folder: Path) -> str:
+def old_rule(spec: str, folder: Path, size: Size) -> str:
     """The best by means over consecutive pairs: CUES of the preset `inliers`."""
-    dataset = aerocues.open_dataset(
-        spec, pairs="consecutive", max_width=WIDTH, max_pairs=CONSECUTIVE
-    )
+    dataset = size.opened(spec, pairs="consecutive", max_pairs=CONSECUTIVE)
     results = aerocues.run(
-        dataset, COMBINATIONS, folder, timing="estimated", max_keypoints=KEYPOINTS
+        dataset, COMBINATIONS, folder, timing="estimated", max_keypoints=size.keypoints
     )
     measured = table_of(results, "inliers", dataset=dataset.name, reconstruction=False)
     scores = score(measured.table, measured.preset.settings)
@@ -200,22 +198,27 @@ def old_rule(spec: str, folder: Path) -> str:
 
 
 def lines(
-    name: str, work: Path, objectives: Sequence[str], budget: float
+    name: str, work: Path, objectives: Sequence[str], budget: float, size: Size
 ) -> Iterator[dict[str, object]]:
     """A row for each objective, without and with the final, for COLMAP and for the old rule."""
     spec = flight(name, work)
     folder = work / f"{name}-race"
-    dataset = aerocues.open_dataset(spec, max_width=WIDTH)
+    dataset = size.opened(spec)
     judge = None
     for objective in objectives:
-        found = raced(spec, folder, objective, budget)
-        judge = judge or Judge(name, built(found, dataset))
+        found = aerocues.recommend(
+            *(dataset, COMBINATIONS, folder),
+            budget=budget,
+            objective=objective,
+            max_keypoints=size.keypoints,
+        )
+        judge = judge or Judge(name, built(found, dataset, size.keypoints))
         yield judge.told(f"{objective}, race", found.leader)
         yield judge.told(f"{objective}, final", found.best)
     assert judge is not None
     yield judge.told("COLMAP's default", str(BASELINE))
     yield judge.told("SIFT-SIFT", "SIFT-SIFT-L2-EXACT")
-    yield judge.told("inliers, consecutive", old_rule(spec, work / f"{name}-consecutive"))
+    yield judge.told("inliers, consecutive", old_rule(spec, work / f"{name}-consecutive", size))
 
 
 def main() -> None:
@@ -225,11 +228,14 @@ def main() -> None:
     parser.add_argument("flights", nargs="*", default=FLIGHTS)
     parser.add_argument("--objectives", default=",".join(OBJECTIVES))
     parser.add_argument("--budget", type=float, default=BUDGET)
+    parser.add_argument("--width", type=int, default=Size.width)
+    parser.add_argument("--keypoints", type=int, default=Size.keypoints)
     asked = parser.parse_args()
+    size = Size(asked.width, asked.keypoints)
     asked.work.mkdir(parents=True, exist_ok=True)
     found = []
     for name in asked.flights:
-        found += list(lines(name, asked.work, asked.objectives.split(","), asked.budget))
+        found += list(lines(name, asked.work, asked.objectives.split(","), asked.budget, size))
         pl.DataFrame(found).write_csv(asked.work / "outcome.csv")
     table = pl.DataFrame(found)
     means = table.group_by("rule", maintain_order=True).agg(
