@@ -54,11 +54,14 @@ class Bootstrap:
         """Lower and upper bound, (alternatives,) each: Student's t interval of the score.
 
         Percentiles of resamples of few repeats are too narrow, and cannot reach beyond the repeats.
+        The scale is estimated from the same repeats, which takes a degree of freedom and shifts
+        the score; the mean shift of the resamples widens the interval (`benchmarks/intervals.py`).
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # alternatives without a score
             error = np.nanstd(self.scores, axis=0)
-        reach = self._quantile(confidence) * error
+            shift = np.abs(np.nanmean(self.scores, axis=0) - self.centre)
+        reach = self._quantile(confidence, estimated=2) * error + shift
         return np.maximum(self.centre - reach, 0.0), np.minimum(self.centre + reach, 1.0)
 
     def rank_interval(self, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
@@ -72,7 +75,7 @@ class Bootstrap:
         low, high = _interval(self.ranks, ndtr(-self._quantile(confidence)))
         return np.floor(low), np.ceil(high)
 
-    def _quantile(self, confidence: float) -> Array:
+    def _quantile(self, confidence: float, estimated: int = 1) -> Array:
         """(alternatives,) quantiles of Student's t, for the standard deviation of resamples.
 
         Their variance is that of a mean of the units n, times (n - 1) / n. NaN for a single unit.
@@ -80,8 +83,9 @@ class Bootstrap:
         # scipy.stats.t has the same values, but takes most of a second to load.
         from scipy.special import stdtrit
 
-        free = np.maximum(self.units_of - 1, 1)
-        quantiles = stdtrit(free, (1 + confidence) / 2) * np.sqrt((free + 1) / free)
+        units = np.maximum(self.units_of, 2)
+        free = np.maximum(units - estimated, 1)
+        quantiles = stdtrit(free, (1 + confidence) / 2) * np.sqrt(units / (units - 1))
         return np.where(self.units_of > 1, quantiles, np.nan)
 
     def probability_best(self) -> Array:
