@@ -292,6 +292,25 @@ def test_the_chance_test_is_seeded_and_counts_as_it_says() -> None:
     assert len(means) > 1
 
 
+@pytest.mark.parametrize("true", [0, 12, 20, 40])
+def test_the_verdict_needs_no_shuffled_set_after_one_that_is_not_beaten(true: int) -> None:
+    protocol = MeasurementProtocol(verification=SETTINGS)
+    for seed in range(6):
+        first, second, _ = two_views(true, 160 - true, seed=seed)
+        one, other = (
+            Verifier(protocol, "epipolar", Clock(), count_all=count_all).verify(
+                first, second, np.arange(160)
+            )
+            for count_all in (True, False)
+        )
+        assert (one.passed, one.sampling, one.status) == (
+            other.passed,
+            other.sampling,
+            other.status,
+        )
+        np.testing.assert_array_equal(one.model.inliers, other.model.inliers)
+
+
 def test_the_shuffled_estimations_are_not_timed() -> None:
     first, second, _ = two_views(100, 100)
     verdict = verify(first, second, chance=ChanceTest(shuffles=200))
