@@ -39,7 +39,7 @@ from aerocues.reconstruction.reconstruction_progress import ReconstructionProgre
 from aerocues.reconstruction.scene import Scene
 from aerocues.reconstruction.scene_making import scene_of, with_cameras
 from aerocues.reconstruction.truth import centres_of, compare_with_truth, locate, true_positions
-from aerocues.reconstruction.verification import linked_pairs, verify
+from aerocues.reconstruction.verification import agreeing, verify
 from aerocues.results.reconstruction_schema import BASELINE
 
 SIFT = Combination("SIFT", "SIFT", "L2", "BF")  # names the inlier threshold
@@ -114,9 +114,9 @@ def made(scene: Scene, setting: Setting, source: Path) -> tuple[list[Any], list[
     database = scene.folder / "control.db"
 
     def verified() -> None:
-        linked = linked_pairs(matched, scene, SIFT)
-        write_database(database, scene, matched, linked)
-        verify(database, linked, scene, SIFT)
+        agreed = agreeing(matched, scene, SIFT)
+        write_database(database, scene, agreed)
+        verify(database, agreed.pairs, scene, SIFT)
 
     def mapped() -> list[Any]:
         folder = scene.folder / "mapping"

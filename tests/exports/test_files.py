@@ -35,12 +35,12 @@ def test_the_flight_is_what_we_find_in_single_images(flight: Flight) -> None:
     assert len(flight.linked.pairs) >= 3
     assert set(flight.verified) <= set(flight.linked.pairs)
     for (first, second), matches in flight.linked.pairs.items():
-        expected = pipeline.match(found[first], found[second])
-        np.testing.assert_array_equal(matches.indices, expected.indices)
-        together = {tuple(row) for row in matches.indices.tolist()}
-        verified = flight.verified[first, second]
-        assert len(verified) >= 15
-        assert {tuple(row) for row in verified.tolist()} <= together
+        # Our matches that agree with the geometry of the pair; COLMAP verifies most of them.
+        ours = {tuple(row) for row in pipeline.match(found[first], found[second]).indices.tolist()}
+        agreeing = {tuple(row) for row in matches.indices.tolist()}
+        verified = {tuple(row) for row in flight.verified[first, second].tolist()}
+        assert verified <= agreeing < ours
+        assert len(verified) >= max(15, 0.8 * len(agreeing))
 
 
 def test_colmap_opens_its_database(flight: Flight, tmp_path: Path) -> None:

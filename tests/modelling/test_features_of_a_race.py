@@ -28,7 +28,7 @@ from tests.made_once import made_once
 from tests.reconstruction.scenes import write_scene
 
 ORB = Combination.parse("ORB-ORB-HAM-EXACT")
-KEYPOINTS = 400
+KEYPOINTS = 700
 KEPT = f"{MODELS}/{FEATURES}"
 
 

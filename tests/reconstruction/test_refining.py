@@ -125,7 +125,7 @@ def test_matches_of_what_is_rejected_are_left_out(landscape: Dataset) -> None:
     rows = np.column_stack([np.arange(60)] * 2).astype(np.int32)
     pair = (names[0], names[1])
     matched = MatchedScene(keypoints, {pair: PairMatches(rows, np.zeros(60, np.float32))}, 0, 0)
-    sharper, found = refine_scene(landscape, matched, {pair: np.ones(60, bool)}, Refinement())
+    sharper, found = refine_scene(landscape, matched, Refinement())
     assert found.observations == 60
     assert len(sharper.pairs[pair]) == found.accepted < 20
     assert len(matched.pairs[pair]) == 60

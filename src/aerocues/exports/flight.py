@@ -51,9 +51,10 @@ class Flight:
     sizes : mapping of str to Prepared
         Width and height of the measured images by name.
     linked : MatchedScene
-        Keypoints of all images, and mutual matches of the pairs that beat chance.
+        Keypoints of all images, and of the pairs that beat chance the matches that agree with their
+        geometry.
     verified : mapping of pairs to (K, 2) int32
-        Indices of the keypoints of the matches that agree with the geometry of the pair.
+        Indices of the keypoints of the matches that COLMAP verified.
     """
 
     scene: Scene

@@ -47,7 +47,8 @@ class Used:
     text : str
         The program or the settings; empty for files.
     figures : mapping of str to int
-        Of files: images, keypoints, matches of the pairs that beat chance, and verified ones.
+        Of files: images, keypoints, agreeing matches of the pairs that beat chance, and those that
+        COLMAP verified.
     next : tuple of str
         Commands of the tool that go on from the files.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import Any
 
 from aerocues.pipeline.features import StageError
@@ -10,7 +9,7 @@ from aerocues.reconstruction.database import verified_inliers, write_database
 from aerocues.reconstruction.diagnosis import Outcome, without_features, without_links
 from aerocues.reconstruction.feature_size import features_scale
 from aerocues.reconstruction.mapping import map_scene
-from aerocues.reconstruction.matched_scene import MatchedScene, Names, read_matched_scene
+from aerocues.reconstruction.matched_scene import MatchedScene, read_matched_scene
 from aerocues.reconstruction.matching import SceneMatcher
 from aerocues.reconstruction.one_model import (
     DATABASE,
@@ -20,13 +19,8 @@ from aerocues.reconstruction.one_model import (
     ModelMaker,
 )
 from aerocues.reconstruction.precision import keypoint_error
-from aerocues.reconstruction.refining import (
-    Inliers,
-    refine_scene,
-    refinement_figures,
-    warm_up_refinement,
-)
-from aerocues.reconstruction.verification import linked_pairs, verify
+from aerocues.reconstruction.refining import refine_scene, refinement_figures, warm_up_refinement
+from aerocues.reconstruction.verification import agreeing, verify
 from aerocues.results.metrics import Row
 
 MATCHES = "matches.npz"
@@ -51,13 +45,12 @@ class CombinationModel(ModelMaker):
         matched = self._matched()
         if failure := without_features({n: len(k) for n, k in matched.keypoints.items()}):
             return failure
-        pairs = self.timed(
-            "verification",
-            lambda: linked_pairs(matched, self.scene, self.combination, self.announce),
+        agreed = self.timed(
+            "verification", lambda: agreeing(matched, self.scene, self.combination, self.announce)
         )
-        self.row["linked_pairs"] = len(pairs)
-        matched = self._refined(matched, pairs)
-        linked = self.timed("verification", lambda: self._verify(matched, pairs))
+        self.row["linked_pairs"] = len(agreed.pairs)
+        sharper = self._refined(agreed)
+        linked = self.timed("verification", lambda: self._verify(sharper))
         self.row.update(
             verified_pairs=len(linked.inliers),
             verified_matches=sum(linked.inliers.values(), start=0),
@@ -97,7 +90,7 @@ class CombinationModel(ModelMaker):
         )
         return matched
 
-    def _refined(self, matched: MatchedScene, pairs: Mapping[Names, Inliers]) -> MatchedScene:
+    def _refined(self, matched: MatchedScene) -> MatchedScene:
         """The scene with sharper keypoints, where they are asked for."""
         refinement = self.scene.protocol.refinement
         if refinement is None:
@@ -106,15 +99,15 @@ class CombinationModel(ModelMaker):
         dataset = self.scene.dataset
         scale = features_scale(dataset.images[0], self.scene.protocol.features_width)
         sharper, found = self.timed(
-            OPTIONAL_STAGE, lambda: refine_scene(dataset, matched, pairs, refinement, scale)
+            OPTIONAL_STAGE, lambda: refine_scene(dataset, matched, refinement, scale)
         )
         self.row.update(refinement_figures(found))
         return sharper
 
-    def _verify(self, matched: MatchedScene, pairs: Iterable[Names]) -> Linked:
+    def _verify(self, matched: MatchedScene) -> Linked:
         database = self.folder / DATABASE
-        numbers = write_database(database, self.scene, matched, pairs)
-        if not pairs:
+        numbers = write_database(database, self.scene, matched)
+        if not matched.pairs:
             return Linked({}, numbers)
-        verify(database, pairs, self.scene, self.combination)
+        verify(database, matched.pairs, self.scene, self.combination)
         return Linked(verified_inliers(database, numbers), numbers)

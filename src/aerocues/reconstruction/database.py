@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +15,8 @@ from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.scene import Scene
 
 
-def write_database(
-    file: Path, scene: Scene, matched: MatchedScene, linked: Iterable[Names]
-) -> dict[str, int]:
-    """Create the database: cameras, images, keypoints, and the matches of linked pairs.
+def write_database(file: Path, scene: Scene, matched: MatchedScene) -> dict[str, int]:
+    """Create the database: cameras, images, keypoints and matches.
 
     An existing file is replaced, even if it is damaged.
 
@@ -33,8 +31,8 @@ def write_database(
         numbers = {str(image.name): int(image.image_id) for image in database.read_all_images()}
         for name, keypoints in matched.keypoints.items():
             database.write_keypoints(numbers[name], _rows(keypoints))
-        for first, second in linked:
-            indices = matched.pairs[first, second].indices.astype(np.uint32)
+        for (first, second), matches in matched.pairs.items():
+            indices = matches.indices.astype(np.uint32)
             database.write_matches(numbers[first], numbers[second], indices)
     finally:
         database.close()

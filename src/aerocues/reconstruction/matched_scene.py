@@ -35,6 +35,10 @@ class PairMatches:
     indices: Int32Array
     distance: Float32Array
 
+    def chosen(self, wanted: NDArray[np.bool_]) -> PairMatches:
+        """Those of (M,) bool."""
+        return PairMatches(self.indices[wanted], self.distance[wanted])
+
     def __len__(self) -> int:
         return len(self.indices)
 

@@ -15,7 +15,7 @@ Intrinsics = Literal["calibrated", "fixed", "refine"]
 Mapper = Literal["incremental", "global"]
 
 # Raise this whenever the same images and methods would give other models.
-RECONSTRUCTION_VERSION = 1
+RECONSTRUCTION_VERSION = 2
 
 
 @dataclass(frozen=True)

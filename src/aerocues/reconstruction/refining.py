@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +13,10 @@ from aerocues.methods.arrays import Float32Array, Matches
 from aerocues.pipeline.patch_matching import as_gray
 from aerocues.pipeline.protocol import Refinement
 from aerocues.pipeline.refinement import RefinedKeypoints, refine_tracks
-from aerocues.reconstruction.matched_scene import MatchedScene, Names, PairMatches
+from aerocues.reconstruction.matched_scene import MatchedScene, PairMatches
 from aerocues.results.metrics import Row
 
-Inliers = NDArray[np.bool_]
-"""(M,) of the matches of a pair."""
+Rejected = NDArray[np.bool_]
 GRAY_BYTES = 256 * 2**20
 
 
@@ -54,7 +52,6 @@ class GrayImages:
 def refine_scene(
     dataset: Dataset,
     matched: MatchedScene,
-    linked: Mapping[Names, Inliers],
     refinement: Refinement,
     scale: float = 1.0,
 ) -> tuple[MatchedScene, RefinedKeypoints]:
@@ -64,8 +61,7 @@ def refine_scene(
     ----------
     dataset : Dataset
     matched : MatchedScene
-    linked : mapping of pairs to (M,) bool
-        Which matches of the pairs that beat chance agree with the geometry of the pair.
+        With matches that agree with the geometry of their pair.
     refinement : Refinement
     scale : float
         Pixels of the images to one of those that features were found in.
@@ -84,8 +80,8 @@ def refine_scene(
     names = list(matched.keypoints)
     number = {name: position for position, name in enumerate(names)}
     pairs = {
-        (number[first], number[second]): _verified(matched.pairs[first, second], agree)
-        for (first, second), agree in linked.items()
+        (number[first], number[second]): Matches(each.indices, each.distance)
+        for (first, second), each in matched.pairs.items()
     }
     found = refine_tracks(
         GrayImages(dataset, refinement.blur),
@@ -137,10 +133,5 @@ def refinement_figures(found: RefinedKeypoints) -> Row:
     }
 
 
-def _verified(matches: PairMatches, agree: Inliers) -> Matches:
-    return Matches(matches.indices[agree], matches.distance[agree])
-
-
-def _without(matches: PairMatches, first: Inliers, second: Inliers) -> PairMatches:
-    keep = ~(first[matches.indices[:, 0]] | second[matches.indices[:, 1]])
-    return PairMatches(matches.indices[keep], matches.distance[keep])
+def _without(matches: PairMatches, first: Rejected, second: Rejected) -> PairMatches:
+    return matches.chosen(~(first[matches.indices[:, 0]] | second[matches.indices[:, 1]]))

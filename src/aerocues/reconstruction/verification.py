@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from aerocues.methods.combination import Combination
 from aerocues.pipeline.clock import Clock
@@ -19,35 +18,34 @@ from aerocues.reconstruction.matched_scene import MatchedScene, Names
 from aerocues.reconstruction.scene import Scene
 
 
-def linked_pairs(
+def agreeing(
     matched: MatchedScene,
     scene: Scene,
     combination: Combination,
     announce: Announce = silent,
-) -> dict[Names, NDArray[np.bool_]]:
-    """The pairs whose matches beat chance, and which of them agree with the geometry, (M,) bool.
+) -> MatchedScene:
+    """The pairs whose matches beat chance, with those matches that agree with their geometry.
 
-    Without a chance test, all pairs with enough matches; and all matches where nobody needs to
-    know which agree.
+    COLMAP samples again, with its own models: of matches that are mostly right it needs few
+    samples, and hardly any wrong one becomes a point. Without a chance test, all pairs with enough
+    matches; and all of their matches where nobody needs to know which agree.
     """
     least = scene.protocol.verification.minimum_matches
-    enough = [names for names, matches in matched.pairs.items() if len(matches) >= least]
+    enough = {names: each for names, each in matched.pairs.items() if len(each) >= least}
     if scene.protocol.chance is None and scene.protocol.refinement is None:
-        return {names: np.ones(len(matched.pairs[names]), bool) for names in enough}
+        return replace(matched, pairs=enough)
     measurement = scene.measurement()
     scale = features_scale(scene.dataset.images[0], scene.protocol.features_width)
     measurement = measurement.with_threshold(measurement.threshold(combination) * scale)
     verifier = Verifier(measurement, "epipolar", Clock(measurement.seed), count_all=False)
-    verdicts = {}
-    for number, names in enumerate(enough, start=1):
+    pairs = {}
+    for number, (names, matches) in enumerate(enough.items(), start=1):
         call = stage_call("verify", combination, " and ".join(names))
         announce(replace(call, number=number, total=len(enough)))
-        verdicts[names] = _verdict(verifier, matched, names)
-    return {
-        names: verdict.model.inliers
-        for names, verdict in verdicts.items()
-        if verdict.passed or scene.protocol.chance is None
-    }
+        verdict = _verdict(verifier, matched, names)
+        if verdict.passed or scene.protocol.chance is None:
+            pairs[names] = matches.chosen(verdict.model.inliers)
+    return replace(matched, pairs=pairs)
 
 
 def _verdict(verifier: Verifier, matched: MatchedScene, names: Names) -> Verdict:
