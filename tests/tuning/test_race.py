@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aerocues.errors import ScoreError
-from aerocues.scoring.criteria import Criterion
+from aerocues.scoring.criteria import LINKS, Criterion, criteria_named
 from aerocues.scoring.cues import score
+from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.scoring.table import DecisionTable
 from aerocues.tuning.race import RaceOutcome, RaceSettings, race
 from aerocues.tuning.scales import Scales
@@ -119,6 +120,36 @@ def test_the_first_look_sees_every_block() -> None:
     _, outcome = run(share=0.02)
     seen = outcome.known.any(axis=0).reshape(3, 8)
     assert seen.any(axis=1).all()
+
+
+def turned_strips() -> ReplayEvaluator:
+    """36 alternatives on 24 pairs, six of them turned: half are better, and fail on turned ones."""
+    names = [f"{d}-{e}" for d in DETECTORS for e in DESCRIPTORS]
+    upright = np.array([name[-1] in "uvw" for name in names])
+    turned = np.arange(24) % 4 == 3
+    random = np.random.default_rng(0)
+    precision = np.where(upright, 0.8, 0.5)[:, None] + random.normal(0, 0.05, (36, 24))
+    links = np.where(upright, 1.0, 0.7)[:, None] + np.zeros((36, 24))
+    values = np.stack([precision, links], axis=-1)
+    values[upright[:, None] & turned] = np.nan
+    components = {"detector": [n[0] for n in names], "descriptor": [n[-1] for n in names]}
+    criteria = criteria_named(("ref_precision@3", LINKS))
+    seconds = random.uniform(0.5, 1.5, 36)
+    evaluator = ReplayEvaluator(
+        *(names, components, criteria, values, np.zeros(24, np.int64)),
+        *(np.tile(seconds[:, None], (1, 24)), seconds),
+    )
+    evaluator.classes = turned.astype(np.int64)
+    return evaluator
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_fails_on_few_turned_pairs_does_not_lead(seed: int) -> None:
+    evaluator = turned_strips()
+    chosen = RaceSettings(0.12 * evaluator.total, seed, objective=OBJECTIVES["reconstruction"])
+    outcome = race(evaluator, chosen)
+    first = [evaluator.alternatives[place][-1] for place in outcome.order[:5]]
+    assert not set(first) & set("uvw")
 
 
 def test_nothing_to_choose_from_and_nothing_that_works() -> None:

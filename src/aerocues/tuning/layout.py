@@ -36,6 +36,16 @@ def blocks_of(pairs: Sequence[Pair]) -> NDArray[np.int64]:
     return np.unique([pair.sequence for pair in pairs], return_inverse=True)[1].astype(np.int64)
 
 
+def kinds_of_pairs(blocks: NDArray[np.int64], classes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(P,) number of each pair's block and class together.
+
+    Methods without orientation fail on all pairs of a class: what was measured on others says
+    nothing of these.
+    """
+    both = np.stack([blocks, classes], axis=1)
+    return np.unique(both, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
 def spread_order(blocks: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.intp]:
     """Pairs in random order, one of each block, then the second of each, and so on."""
     place = np.zeros(len(blocks), np.intp)

@@ -22,7 +22,7 @@ from aerocues.scoring.objectives import OBJECTIVES, Objective
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.valuation import Valuation, chances, interest_of
 from aerocues.tuning.criteria_evaluator import Cell, CriteriaEvaluator
-from aerocues.tuning.layout import KIND, features, spread_order
+from aerocues.tuning.layout import KIND, features, kinds_of_pairs, spread_order
 from aerocues.tuning.scales import Array, Mask, Scales
 from aerocues.tuning.surrogate import Surrogate, fit
 
@@ -183,7 +183,8 @@ class _Race:
         self._values = np.full((*shape, len(evaluator.criteria)), np.nan)
         self._is_cost = np.array([each.better == "lower" for each in evaluator.criteria])
         self._features, self._groups = features(evaluator.components)
-        self._order = spread_order(evaluator.blocks, self._rng)
+        self._kinds = kinds_of_pairs(evaluator.blocks, evaluator.classes)
+        self._order = spread_order(self._kinds, self._rng)
         self._rounds: list[Round] = []
         self._draw_seconds = _DRAW_SECONDS * (self._values.size + self._features.size)
 
@@ -248,8 +249,8 @@ class _Race:
         """The cheapest alternatives on a pair of each block."""
         count = max(round(self._settings.cheapest * len(self._known)), 2)
         cheapest = np.argsort(self._evaluator.predicted_seconds, kind="stable")[:count]
-        blocks = len(np.unique(self._evaluator.blocks))
-        pairs = self._order[: max(min(blocks, _MOST_BLOCKS), _FEWEST_PAIRS)]
+        kinds = len(np.unique(self._kinds))
+        pairs = self._order[: max(min(kinds, _MOST_BLOCKS), _FEWEST_PAIRS)]
         cells = [(int(a), int(p)) for p in pairs for a in cheapest]
         return [cell for cell in cells if not self._known[cell]]
 
@@ -280,8 +281,7 @@ class _Race:
             )
         scales = Scales.of(measured, self._is_cost)
         stretched = scales.stretch(self._values)
-        blocks = self._evaluator.blocks
-        return fit(stretched, self._known, self._features, self._groups, blocks), scales
+        return fit(stretched, self._known, self._features, self._groups, self._kinds), scales
 
     def _score(self, surrogate: Surrogate, scales: Scales, draws: int) -> tuple[Array, Array]:
         """(A,) expected scores, and (draws, A) scores of drawn tables."""
