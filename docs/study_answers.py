@@ -134,7 +134,8 @@ class Answers(Parts):
             for results in self.results([name]):
                 choice = aerocues.choose(results, aim)
                 ranking = aerocues.score(results, choice.presets[0])
-                found[title] = Finding(choice, ranking, not results.reconstructions().is_empty())
+                of_models = any(each.reconstruction for each in ranking.scores.table.criteria)
+                found[title] = Finding(choice, ranking, of_models)
         return found
 
     def main_finding(self) -> str:

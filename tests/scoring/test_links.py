@@ -13,8 +13,10 @@ from aerocues.scoring.bootstrap import bootstrap
 from aerocues.scoring.combinations import decision_table, suitable_preset
 from aerocues.scoring.criteria import criteria_named
 from aerocues.scoring.cues import score
+from aerocues.scoring.finished import scores_of_finished
 from aerocues.scoring.links import Links
 from aerocues.scoring.measured import table_of as measured_table
+from aerocues.scoring.objectives import OBJECTIVES
 from aerocues.scoring.per_repeat import scores_of_repeats
 from aerocues.scoring.settings import ScoreSettings
 from tests.scoring.measurements import Stored, row, rows
@@ -125,6 +127,18 @@ def test_a_failed_pair_links_nothing_and_an_unmeasured_one_says_nothing() -> Non
     assert found.links is not None
     np.testing.assert_allclose(found.links.share, [[NAN, 0.5], [0.0, 1.0]])
     assert found.links.classes.tolist() == [0, 1]
+
+
+def test_failed_pairs_are_no_links_in_finished_results() -> None:
+    table = rows(
+        *(measured(UPRIGHT, n, 190, status="chance" if n % 2 else "ok") for n in range(4)),
+        *(measured(TURNING, n, 70) for n in range(4)),
+    )
+    found = scores_of_finished(table, OBJECTIVES["reconstruction"], resamples=2, seed=0)
+    scores = dict(zip(found.alternatives, found.scores, strict=True))
+    # By hand: the worst coverage, .35, where it failed, and no link to any turned pair.
+    assert scores[UPRIGHT] == pytest.approx((0.95 + 0.35) / 2 * 0.05 / 1.05)
+    assert scores[TURNING] == pytest.approx(0.35)
 
 
 def test_without_references_scores_are_by_inliers() -> None:

@@ -180,7 +180,8 @@ _REFERENCE: tuple[Criterion, ...] = (
     ),
     Criterion(
         LINKS,
-        column=f'least("{RIGHT_MATCHES}" / 60.0, 1.0)',
+        # Not `least`, which leaves null out: a failed pair would be a sure link.
+        column=f'(case when "{RIGHT_MATCHES}" > 60 then 60 else "{RIGHT_MATCHES}" end) / 60.0',
         description="how surely a pair is linked: right matches / 60, at most 1",
         reference=True,
     ),
