@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from racing_on_flights import seconds_of
 from replay import ReplayEvaluator
 
 from aerocues.results.combination_columns import combination_name
@@ -27,7 +28,6 @@ from aerocues.scoring.cues import score
 from aerocues.scoring.measured import table_of
 from aerocues.scoring.settings import ScoreSettings
 from aerocues.scoring.table import DecisionTable
-from aerocues.tuning.costs import EXACT_SECONDS, EXACT_SHARE
 from aerocues.tuning.race import FEW, RaceSettings, race
 
 NAMES = (
@@ -75,21 +75,13 @@ def measured(folder: str) -> tuple[list[str], Values, Values, NDArray[np.int64],
     results = Results(folder)
     table = table_of(results).table
     rows = results.table().with_columns(name=combination_name())
-    two = (f"{stage}_seconds_{side}_cpu" for stage in ("detect", "describe") for side in (1, 2))
-    match = pl.col("match_seconds_cpu").fill_null(0.0)
-    share = pl.col("norm").replace_strict(EXACT_SHARE, return_dtype=pl.Float64)
-    fast = pl.min_horizontal(match, EXACT_SECONDS + share * match)
-    cost = (
-        pl.sum_horizontal(pl.col(*two).fill_null(0.0))
-        + pl.when(pl.col("matcher") == "BF").then(fast).otherwise(match)
-        + 6 * pl.col("verify_seconds_cpu").fill_null(0.0)
-    )
     alternatives = list(table.alternatives)
     position = {name: i for i, name in enumerate(alternatives)}
     place = {name: i for i, name in enumerate(table.repeats)}
     seconds = np.zeros(table.values.shape[:2])
-    for name, pair, value in rows.select("name", "pair", cost.alias("cost")).iter_rows():
-        seconds[position[name], place[str(pair)]] = value
+    for name, pair, value in rows.select("name", "pair", seconds_of(rows)).iter_rows():
+        if str(pair) in place:  # others have no reference
+            seconds[position[name], place[str(pair)]] = value
     return alternatives, table.values, seconds, table.blocks, list(table.criteria)
 
 

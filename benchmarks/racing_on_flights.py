@@ -90,7 +90,7 @@ def seconds_of(rows: pl.DataFrame) -> pl.Series:
         + pl.when(pl.col("matcher") == "BF").then(exact).otherwise(match)
         + 6 * pl.col("verify_seconds_cpu").fill_null(0.0)
     )
-    return rows.select(cost).to_series()
+    return rows.select(seconds=cost).to_series()
 
 
 def flight_of(folder: Path, objective: str) -> Flight:

@@ -119,8 +119,7 @@ class Verdict:
         How it was found: a fundamental matrix from uniform or from guided samples, or a homography
         from guided ones.
     chance_mean, chance_max : float, int or None
-        Inliers that shuffled matches give; None where that was not asked, and of no meaning where
-        the verifier does not count them all.
+        Inliers that shuffled matches give; None where the verifier does not count them all.
     passed : bool
         Whether there is a model and, where asked, it beats chance.
     time : StageTime
@@ -265,18 +264,18 @@ class Verifier:
             lambda: _estimate(attempt.find, points_1, points_2, attempt.parameters)
         )
         model = _checked(*raw, count)
-        known = model.matrix is not None
         counts: list[int] = []
-        for number in range(attempt.shuffles if self._count_all or known else 0):
+        for number in range(attempt.shuffles):
             counts.append(self._shuffled_count(attempt, points_1, points_2, number))
             if not self._count_all and model.count <= attempt.factor * counts[-1]:
                 break
-        passed = known and model.count > attempt.factor * max(counts, default=0)
+        passed = model.matrix is not None and model.count > attempt.factor * max(counts, default=0)
         if attempt.sampling != "uniform":
             inliers = np.zeros(count, bool)
             inliers[order] = model.inliers
             model = Model(model.matrix, inliers)
-        mean, largest = (float(np.mean(counts)), max(counts)) if counts else (None, None)
+        told = counts and self._count_all
+        mean, largest = (float(np.mean(counts)), max(counts)) if told else (None, None)
         return Verdict(model, attempt.sampling, mean, largest, passed, time)
 
     def _shuffled_count(

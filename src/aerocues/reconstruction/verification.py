@@ -27,8 +27,8 @@ def agreeing(
     """The pairs whose matches beat chance, with those matches that agree with their geometry.
 
     COLMAP samples again, with its own models: of matches that are mostly right it needs few
-    samples, and hardly any wrong one becomes a point. Without a chance test, all pairs with enough
-    matches; and all of their matches where nobody needs to know which agree.
+    samples, and hardly any wrong one becomes a point. Without a chance test, all pairs with a
+    geometry; and all pairs with enough matches where nobody needs to know which agree.
     """
     least = scene.protocol.verification.minimum_matches
     enough = {names: each for names, each in matched.pairs.items() if len(each) >= least}
@@ -43,7 +43,7 @@ def agreeing(
         call = stage_call("verify", combination, " and ".join(names))
         announce(replace(call, number=number, total=len(enough)))
         verdict = _verdict(verifier, matched, names)
-        if verdict.passed or scene.protocol.chance is None:
+        if verdict.passed:
             pairs[names] = matches.chosen(verdict.model.inliers)
     return replace(matched, pairs=pairs)
 

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Literal
 
 from aerocues.errors import ScoreError
+from aerocues.scoring.links import ENOUGH
 
 Better = Literal["higher", "lower"]
 DIRECTIONS: tuple[Better, ...] = ("higher", "lower")
@@ -181,8 +182,9 @@ _REFERENCE: tuple[Criterion, ...] = (
     Criterion(
         LINKS,
         # Not `least`, which leaves null out: a failed pair would be a sure link.
-        column=f'(case when "{RIGHT_MATCHES}" > 60 then 60 else "{RIGHT_MATCHES}" end) / 60.0',
-        description="how surely a pair is linked: right matches / 60, at most 1",
+        column=f'(case when "{RIGHT_MATCHES}" > {ENOUGH} then {ENOUGH} else "{RIGHT_MATCHES}" end)'
+        f" / {ENOUGH}",
+        description=f"how surely a pair is linked: right matches / {ENOUGH:.0f}, at most 1",
         reference=True,
     ),
     Criterion(

@@ -1,9 +1,10 @@
 """A race for the highest CUES: cheap first measurements, then more pairs for likely winners.
 
-First the cheapest combinations are measured on a pair of each block. A model then predicts the
-values that were not measured, with their uncertainty. Tables are drawn from it and scored, and the
-combinations that win some of these tables are measured next, the cheaper and less measured ones
-first (Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm identification", 2020).
+First the cheapest combinations are measured on a pair of each block and class. A model then
+predicts the values that were not measured, with their uncertainty. Tables are drawn from it and
+scored, and the combinations that win some of these tables are measured next, the cheaper and less
+measured ones first (Thompson sampling; Russo, "Simple Bayesian algorithms for best-arm
+identification", 2020).
 """
 
 from __future__ import annotations
