@@ -18,6 +18,9 @@ DEMO_COMBINATIONS := SIFT-SIFT-L2-*,AKAZE-AKAZE-HAM-BF,AKAZE-SIFT-L2-BF,KAZE-KAZ
 	)ORB-BEBLID-HAM-BF,BRISK-BRISK-HAM-BF,FAST-FREAK-HAM-BF,AGAST-BRIEF-HAM-BF,GFTT_H-DAISY-L2-BF,$(\
 	)GFTT_H-TEBLID-HAM-BF,STAR-LATCH-HAM-BF,MSER-SIFT-L2-BF
 
+# Hundreds of processes start in tests: without this each would compile all of Python's modules again where a machine says so.
+export PYTHONDONTWRITEBYTECODE :=
+
 # Modules are compiled when they are first imported: most of them never are.
 PIP := $(BIN)/python -m pip
 INSTALL := install --quiet --no-compile --no-deps

@@ -11,10 +11,11 @@ from collections.abc import Callable
 
 from docs.study_answers import Answers
 from docs.study_parts import REPOSITORY
+from docs.study_published import Published
 from docs.study_tables import Tables
 
 
-class Findings(Answers, Tables):
+class Findings(Answers, Tables, Published):
     """What the database says, as Markdown."""
 
 
@@ -31,6 +32,7 @@ PAGES: dict[str, tuple[str, ...]] = {
             "turned",
             "criteria",
             "failures",
+            "stale-keypoints",
         ),
         *("predictors", "presets", "learned", "extra", "pixels"),
     ),
@@ -40,15 +42,16 @@ PAGES: dict[str, tuple[str, ...]] = {
 
 
 def rendered(page: str, findings: Findings) -> str:
-    """The text of a page with what the database says now."""
+    """The text of a page with what the database says now; what needs more than it may stay."""
     text = (REPOSITORY / page).read_text(encoding="utf-8")
     for name in PAGES[page]:
-        written: Callable[[], str] = getattr(findings, name.replace("-", "_"))
+        written: Callable[[], str | None] = getattr(findings, name.replace("-", "_"))
         between = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end of {name} -->)", re.DOTALL)
         place = between.search(text)
         if place is None:
             raise SystemExit(f"{page} has no place for {name}")
-        text = f"{text[: place.start()]}{place[1]}{written()}\n{place[2]}{text[place.end() :]}"
+        if (told := written()) is not None:
+            text = f"{text[: place.start()]}{place[1]}{told}\n{place[2]}{text[place.end() :]}"
     return text
 
 

@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import polars as pl
+import pytest
 
 from aerocues.cli.relations_table import relations_table
 from aerocues.results.combination_columns import METHODS
@@ -29,6 +30,7 @@ def models_of(results: Results) -> pl.DataFrame:
     )
 
 
+@pytest.mark.slow
 def test_relations_to_models_are_told(tmp_path: Path, call: Call) -> None:
     results = folder_of(measured(), tmp_path)
     folder = results.folder

@@ -123,6 +123,7 @@ def test_a_run_tells_what_gray_images_rule_out(call: Call, photos: Path, tmp_pat
         assert outcome in answer.err
 
 
+@pytest.mark.slow
 def test_an_empty_file_among_the_images_is_an_error_of_its_pairs(
     call: Call, photos: Path, tmp_path: Path
 ) -> None:

@@ -19,6 +19,14 @@ from aerocues.results.schema import empty_row, polars_schema
 from aerocues.results.study import add_part
 from docs.study import PAGES, Findings, rendered
 from docs.study_parts import DATABASE, NOT_YET
+from docs.study_published import (
+    PAIRS,
+    PLACES,
+    PUBLISHED,
+    both_measured,
+    lost,
+    published_pairs,
+)
 from docs.study_queries import QUERIES, console, in_common
 from tests.cli.conftest import Call
 from tests.made_once import made_once
@@ -28,7 +36,9 @@ PAGE = REPOSITORY / "docs" / "study.md"
 NAMES = ("brighton-flown-tuned", "uav-thesis", "uav-tuned", "uav-learned", "mini-1000", "mini-4000")
 
 FINISHED = {"leaders": {"finished": "all"}}
-NEED_MORE = ("binary", "extra", "flann", "oblique", "predictors", "presets", "turned")
+NEED_MORE = (
+    *("binary", "extra", "flann", "oblique", "predictors", "presets", "stale-keypoints", "turned"),
+)
 """Statements for which the few rows of the tests do not suffice."""
 
 
@@ -105,6 +115,42 @@ def test_presets_are_compared_by_the_truth_on_what_both_measured() -> None:
     assert in_common(thesis, rows([5], [None])) == ()
 
 
+def test_what_stale_keypoints_lost_is_compared_pair_by_pair(tmp_path: Path) -> None:
+    """By hand: published 1 and 3 of 10 where 5 and 9 are right; 0 of 0 is nothing."""
+    names = {"detector": "orb", "descriptor": "brisk", "norm": "ham", "matcher": "bf"}
+    every = {key: pl.lit(name) for key, name in names.items()}
+    first = 5 * PLACES["bark"]
+    figures = {"pair": [first, first + 1, first + 2, 5], "inliers": [1, 3, 0, 8]}
+    published = pl.DataFrame(figures).with_columns(
+        **every,
+        matches=pl.Series([10, 10, 0, 8]),
+        dataset=pl.lit("oxford"),
+        platform=pl.lit("desktop"),
+    )
+    published.write_parquet(tmp_path / "published.parquet")
+    ours = pl.DataFrame({"pair": [0, 1, 2], "inliers": [5, 9, 1], "matches": [10, 10, 2]})
+    ours = ours.with_columns(
+        sequence=pl.lit("bark"), **{k: pl.lit(name.upper()) for k, name in names.items()}
+    )
+    ratios = both_measured(ours, published_pairs(tmp_path / "published.parquet"))
+    assert lost(ratios, "descriptor").splitlines()[2:] == ["| BRISK | 1 | 0.20 | 0.70 | 0.50 |"]
+
+
+@pytest.mark.slow
+@pytest.mark.shared_data
+def test_published_sequences_are_recognised(shared_data: Path) -> None:
+    published = published_pairs(shared_data / PUBLISHED)
+    [ours] = Findings().results(["oxford-thesis"])
+    keys = ["detector", "descriptor", "norm", "matcher", "sequence", "step"]
+    own = ours.table().with_columns(
+        *(pl.col(key).cast(pl.String) for key in keys[:4]), step=pl.col("pair") % PAIRS
+    )
+    sift = own.filter(pl.col("detector") == "SIFT", pl.col("descriptor") == "SIFT")
+    both = sift.filter(pl.col("matcher") == "BF").join(published, on=keys, suffix="_published")
+    assert len(both) == PAIRS * len(PLACES)
+    assert (both["matches_published"] / both["matches"] - 1).abs().max() < 0.03
+
+
 def test_a_broken_database_is_not_an_empty_one(stand_in: Path, tmp_path: Path) -> None:
     assert Findings(tmp_path).study is None
     shutil.copytree(stand_in, tmp_path, dirs_exist_ok=True)
@@ -154,6 +200,7 @@ def test_the_questions_are_asked_as_the_page_shows(query: str, stand_in: Path, c
     assert asked.code == 0, asked.err
 
 
+@pytest.mark.slow
 def test_its_other_commands_run(
     stand_in: Path, call: Call, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -172,6 +219,7 @@ def test_its_other_commands_run(
     assert ran == 4
 
 
+@pytest.mark.slow
 def test_the_database_is_small_and_has_no_places() -> None:
     assert sum(file.stat().st_size for file in DATABASE.rglob("*")) < 30e6
     study = aerocues.Study(DATABASE)

@@ -89,6 +89,7 @@ def shifts(first: Keypoints, second: Points, octaves: Points) -> tuple[float, fl
     return largest, pairs / len(first)
 
 
+@pytest.mark.slow
 @pytest.mark.opencv_versions
 @pytest.mark.parametrize("name", [row.name for row in DETECTORS])
 def test_keypoints_have_the_bias_that_the_table_tells_and_none_without_it(

@@ -28,6 +28,14 @@ OF_THE_PAGE = ("file:", "data:", "blob:")
 RUN_COMBINATIONS = "ORB-ORB-HAM-BF,AKAZE-AKAZE-HAM-BF,GFTT-BRIEF-HAM-FLANN,SIFT-SIFT-L2-BF"
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What a browser does takes seconds."""
+    for item in items:
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
+
+
 @dataclass
 class Opened:
     """An open report, and what went wrong in it."""

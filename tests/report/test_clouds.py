@@ -86,6 +86,7 @@ def test_strays_are_left_out_and_counted(tmp_path: Path) -> None:
     assert packed["points"]["high"] < 1000
 
 
+@pytest.mark.slow
 def test_clouds_that_are_missing_or_damaged_cost_only_themselves(tmp_path: Path) -> None:
     results = with_models(tmp_path)
     (results.folder / "clouds" / f"{0:032x}.npz").write_bytes(b"no cloud")

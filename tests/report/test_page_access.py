@@ -27,7 +27,6 @@ def _violations(opened: Opened) -> list[str]:
     ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
 def test_axe_finds_nothing_serious_and_nothing_is_wider_than_the_window(
     open_report: Open, scheme: str, width: int
@@ -98,7 +97,6 @@ HELD = """
 """Holds back what is unpacked until the page is told to release it."""
 
 
-@pytest.mark.slow
 def test_paper_before_plotly_says_what_is_not_drawn(open_report: Open) -> None:
     opened = open_report()
     opened.page.add_init_script(HELD)
@@ -114,7 +112,6 @@ def test_paper_before_plotly_says_what_is_not_drawn(open_report: Open) -> None:
     opened.page.wait_for_selector("#figure-weights .main-svg")
 
 
-@pytest.mark.slow
 def test_paper_has_every_figure(open_report: Open) -> None:
     opened = open_report(color_scheme="dark")
     opened.figure("heat")

@@ -42,7 +42,6 @@ def test_the_answer_can_be_copied(open_report: Open) -> None:
     assert opened.page.evaluate("navigator.clipboard.readText()") == command
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("width", [1440, 390])
 def test_the_answer_is_on_the_first_screen(open_report: Open, width: int) -> None:
     opened = open_report(viewport={"width": width, "height": 900 if width > 900 else 844})
@@ -55,7 +54,6 @@ def test_the_answer_is_on_the_first_screen(open_report: Open, width: int) -> Non
     ) == (width > 900)
 
 
-@pytest.mark.slow
 def test_a_pair_on_the_map_opens(open_report: Open) -> None:
     opened = open_report()
     opened.figure("map")
@@ -70,7 +68,6 @@ def test_a_pair_on_the_map_opens(open_report: Open) -> None:
     assert edge.evaluate("each => each === document.activeElement")
 
 
-@pytest.mark.slow
 def test_a_race_gives_its_own_answer_and_how_much_it_measured(
     open_report: Open, tmp_path: Path
 ) -> None:

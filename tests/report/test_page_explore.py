@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
-
 from tests.report.conftest import Opened
 from tests.report.small_payload import names_of
 
@@ -14,7 +12,6 @@ Open = Callable[..., Opened]
 NAMES = names_of()
 
 
-@pytest.mark.slow
 def test_a_row_opens_and_is_compared_with_a_pinned_one(open_report: Open) -> None:
     opened = open_report()
     opened.page.click(f'#ranking button[data-combination="{NAMES[0]}"]')
@@ -30,7 +27,6 @@ def test_a_row_opens_and_is_compared_with_a_pinned_one(open_report: Open) -> Non
     assert NAMES[1] in opened.page.inner_text("#drawer-title")
 
 
-@pytest.mark.slow
 def test_a_point_opens_and_is_marked_in_other_figures(open_report: Open) -> None:
     opened = open_report()
     opened.figure("pareto")
@@ -50,7 +46,6 @@ def _seconds_of_pareto(opened: Opened) -> list[str]:
     return [text for text in texts.all_text_contents() if text.endswith(" s")]
 
 
-@pytest.mark.slow
 def test_dragging_over_points_shows_them_larger(open_report: Open) -> None:
     opened = open_report()
     opened.figure("pareto")
@@ -82,7 +77,6 @@ def test_dragging_over_points_shows_them_larger(open_report: Open) -> None:
     assert drawing.text_content() == whole
 
 
-@pytest.mark.slow
 def test_a_drag_that_is_no_zoom_opens_nothing(open_report: Open) -> None:
     opened = open_report()
     opened.figure("pareto")

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from urllib.parse import parse_qs
 
-import pytest
-
 from tests.report.conftest import Opened
 from tests.report.small_payload import names_of
 
@@ -33,7 +31,6 @@ WORDS = [
 ]  # fmt: skip
 
 
-@pytest.mark.slow
 def test_words_keep_the_combinations_that_they_name(open_report: Open) -> None:
     opened = open_report(plotly=False)
     for words, kept in WORDS:
@@ -43,7 +40,6 @@ def test_words_keep_the_combinations_that_they_name(open_report: Open) -> None:
         assert sorted(shown) == sorted(kept), words
 
 
-@pytest.mark.slow
 def test_a_word_that_nothing_has_is_named(open_report: Open) -> None:
     opened = open_report()
     opened.page.fill("#filter", "orb surf")
@@ -67,7 +63,6 @@ def test_chips_keep_any_of_a_kind_and_all_of_the_kinds(open_report: Open) -> Non
     assert opened.fragment() == ""
 
 
-@pytest.mark.slow
 def test_the_filter_reaches_figures(open_report: Open) -> None:
     opened = open_report()
     opened.figure("dots")
@@ -78,7 +73,6 @@ def test_the_filter_reaches_figures(open_report: Open) -> None:
     assert "ORB-BEBLID-HAM-BF" in str(opened.page.text_content("#figure-dots .plot"))
 
 
-@pytest.mark.slow
 def test_the_state_stands_in_the_address_and_comes_back(open_report: Open) -> None:
     opened = open_report()
     opened.page.fill("#filter", "or sift orb")
@@ -109,7 +103,6 @@ def test_a_changed_address_changes_the_page(open_report: Open) -> None:
     assert opened.rows() == ["KAZE-KAZE-L2-BF"]
 
 
-@pytest.mark.slow
 def test_nonsense_in_the_address_does_no_harm(open_report: Open) -> None:
     opened = open_report(
         "#q=%3Cimg%20src%3Dx%3E&entry=none&sort=-nothing&rows=x&columns=,,&heat.value=zzz"
@@ -121,7 +114,6 @@ def test_nonsense_in_the_address_does_no_harm(open_report: Open) -> None:
     assert opened.page.input_value("#figure-heat select") == "score"
 
 
-@pytest.mark.slow
 def test_another_data_set_can_be_chosen(open_report: Open) -> None:
     opened = open_report()
     opened.page.select_option("#entry", "imported")

@@ -27,7 +27,6 @@ def doubtful(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return written(frame_of([entry]), tmp_path_factory.mktemp("doubtful") / "report.html")
 
 
-@pytest.mark.slow
 def test_what_was_not_compared_is_not_drawn_as_worse(open_report: Open, doubtful: Path) -> None:
     opened = open_report(file=doubtful)
     opened.figure("dots")
@@ -36,7 +35,6 @@ def test_what_was_not_compared_is_not_drawn_as_worse(open_report: Open, doubtful
     assert "Hamming, significantly worse" in legend
 
 
-@pytest.mark.slow
 def test_a_large_weight_of_counts_is_pointed_out(open_report: Open, doubtful: Path) -> None:
     opened = open_report(file=doubtful)
     opened.figure("weights")
@@ -44,7 +42,6 @@ def test_a_large_weight_of_counts_is_pointed_out(open_report: Open, doubtful: Pa
     assert note.startswith("Counts have 70\u00a0% of the weight (inliers)")
 
 
-@pytest.mark.slow
 def test_scores_are_compared_with_the_truth(open_report: Open, doubtful: Path) -> None:
     opened = open_report(file=doubtful)
     opened.figure("truthmatrix")
@@ -52,7 +49,6 @@ def test_scores_are_compared_with_the_truth(open_report: Open, doubtful: Path) -
     assert {"CUES", "preset “thesis”"} < set(rows)
 
 
-@pytest.mark.slow
 def test_an_axis_of_near_values_has_ticks(open_report: Open, doubtful: Path) -> None:
     opened = open_report("#thousand.scale=log", file=doubtful)
     opened.figure("thousand")

@@ -54,7 +54,6 @@ def test_the_table_is_sorted_filtered_and_saved(open_report: Open, tmp_path: Pat
     assert {"status", "points_3d", "message", "cloud_distance_rms"} <= set(saved[0])
 
 
-@pytest.mark.slow
 def test_clouds_are_turned_together(open_report: Open) -> None:
     opened = open_report(plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()
@@ -130,7 +129,6 @@ def test_a_cloud_is_saved_as_a_picture(open_report: Open, tmp_path: Path) -> Non
     assert (tmp_path / "cloud.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.slow
 def test_relations_follow_the_measure(open_report: Open) -> None:
     opened = open_report()
     opened.figure("outcomes")
@@ -142,7 +140,6 @@ def test_relations_follow_the_measure(open_report: Open) -> None:
     opened.page.locator("#figure-outcome .note", has_text="3 combinations").wait_for()
 
 
-@pytest.mark.slow
 def test_clouds_are_light_on_paper(open_report: Open) -> None:
     opened = open_report(color_scheme="dark", plotly=False)
     opened.page.locator("#clouds").scroll_into_view_if_needed()

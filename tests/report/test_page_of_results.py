@@ -6,8 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 import aerocues
 from aerocues import Results
 from tests.report.made_up import COMBINATIONS, folder_of, measured
@@ -26,7 +24,6 @@ def draw_all(opened: Any) -> list[str]:
     return [str(name) for name in found]
 
 
-@pytest.mark.slow
 def test_a_run_with_pictures(open_report: Open, finished: Results, tmp_path: Path) -> None:
     page = aerocues.write_report(finished, tmp_path / "page.html", resamples=50)
     opened = open_report(file=page)
@@ -36,7 +33,6 @@ def test_a_run_with_pictures(open_report: Open, finished: Results, tmp_path: Pat
     assert opened.page.locator("#pictures canvas, #pictures svg, #pictures img").count()
 
 
-@pytest.mark.slow
 def test_two_machines(open_report: Open, two_machines: list[Results], tmp_path: Path) -> None:
     page = aerocues.write_report(two_machines, tmp_path / "page.html", resamples=50)
     opened = open_report(file=page, plotly=False)
@@ -44,7 +40,6 @@ def test_two_machines(open_report: Open, two_machines: list[Results], tmp_path: 
     assert "flight (board)" in opened.page.inner_text("body")
 
 
-@pytest.mark.slow
 def test_one_combination_on_one_pair(open_report: Open, tmp_path: Path) -> None:
     results = folder_of(measured(combinations=COMBINATIONS[:1], pairs=1), tmp_path)
     page = aerocues.write_report(results, tmp_path / "page.html", resamples=50)

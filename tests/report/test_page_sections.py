@@ -29,7 +29,6 @@ OF_MODELS = ("c2c", "outcome", "outcomes")
 OF_FLIGHTS = ("map",)
 
 
-@pytest.mark.slow
 def test_every_figure_is_drawn_and_all_text_stays_text(open_report: Open) -> None:
     opened = open_report()
     found = opened.page.eval_on_selector_all(
@@ -119,7 +118,6 @@ def test_the_table_is_saved_as_it_is_filtered(open_report: Open) -> None:
     assert 0 <= float(rows[0]["score_low"]) < float(rows[0]["score"]) < 1
 
 
-@pytest.mark.slow
 def test_figures_are_saved(open_report: Open) -> None:
     opened = open_report("#theme=dark")
     opened.figure("pareto")
@@ -150,7 +148,6 @@ def test_matches_are_drawn_and_counted(open_report: Open) -> None:
     panel.get_by_text("no picture").wait_for()
 
 
-@pytest.mark.slow
 def test_without_models_the_section_says_how_to_make_them(
     open_report: Open, tmp_path: Path
 ) -> None:
@@ -160,7 +157,6 @@ def test_without_models_the_section_says_how_to_make_them(
         assert opened.page.locator(hidden).is_hidden()
 
 
-@pytest.mark.slow
 def test_one_combination_on_one_pair_is_a_report_too(open_report: Open, tmp_path: Path) -> None:
     opened = open_report(file=written(lone_payload(), tmp_path / "lone.html"))
     assert "only combination" in opened.page.inner_text("#verdict")

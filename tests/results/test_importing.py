@@ -390,6 +390,7 @@ def test_wrong_reconstructions_are_named(tmp_path: Path, table: Path) -> None:
         assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_published_measurements_are_read(shared_data: Path, tmp_path: Path) -> None:
     published = shared_data / "published"
     made = import_results(

@@ -154,6 +154,7 @@ def test_an_archive_that_becomes_gigabytes_is_not_unpacked(
     assert list(temporary.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_table_that_becomes_gigabytes_is_not_read(
     results: Results, tmp_path: Path, temporary: Path
 ) -> None:

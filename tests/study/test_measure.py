@@ -23,6 +23,8 @@ from study.verify import differing
 from tests.cli.conftest import shared_views
 from tests.made_once import made_once
 
+pytestmark = pytest.mark.slow
+
 TINY = """
 max_megabytes = 1
 [defaults.run]
@@ -95,7 +97,6 @@ def arguments(folder: Path) -> list[str]:
     return [*words, "--workers", "1"]
 
 
-@pytest.mark.slow
 def test_the_database_holds_each_row_once(measured: Path) -> None:
     study = aerocues.Study(measured / "database")
     assert study.names == ("views",)
@@ -146,7 +147,6 @@ def test_a_row_that_differs_is_found(measured: Path) -> None:
     assert len(differing(rows, other)) == 1
 
 
-@pytest.mark.slow
 def test_measured_again_it_is_identical(
     measured: Path,
     tmp_path: Path,
@@ -179,7 +179,6 @@ def test_measured_again_it_is_identical(
     assert "verified" not in study.facts("views")
 
 
-@pytest.mark.slow
 def test_an_interruption_stores_what_there_is(
     measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -93,6 +93,7 @@ def picture(path: Path, seed: int | None) -> None:
     Image.fromarray(pixels).save(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seeds", "words"),
     [

@@ -64,6 +64,7 @@ def test_what_pays_becomes_a_preset(call: Call, scenes: Path, tmp_path: Path) ->
     assert call(*run, *WORKERS, "--preset", preset).code == 0
 
 
+@pytest.mark.slow
 def test_what_does_not_pay_stays(call: Call, scenes: Path, tmp_path: Path) -> None:
     grid = tmp_path / "grid.json"
     grid.write_text(json.dumps({"edge_blur_size": [5, 4]}))
