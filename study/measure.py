@@ -191,7 +191,8 @@ class Study:
 
     def _measure_rows(self, step: Step) -> None:
         assert step.round is not None
-        arguments = {**step.part.run, **step.round.run}
+        # As for models: what the preset itself finds is studied.
+        arguments = {"equal_footing": False, **step.part.run, **step.round.run}
         engine = {"workers": self.workers} if self.engine is None else {"engine": self.engine}
         aerocues.run(
             self.dataset(step),

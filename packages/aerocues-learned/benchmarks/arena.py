@@ -68,6 +68,7 @@ def measure(dataset: str, folder: Path, most: int, combinations: Sequence[str]) 
         folder / "results",
         preset=PRESET,
         max_keypoints=KEYPOINTS,
+        equal_footing=False,
         timing="estimated",
         workers=1,
         features=folder / "features",

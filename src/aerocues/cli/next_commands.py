@@ -86,10 +86,11 @@ def next_commands(found: Recommendation, measured: AsMeasured) -> list[str]:
     The model is that of COLMAP's default where nothing beats it.
     """
     few = ",".join(found.ranked["combination"].head(FEW))
+    footing = ["--equal-footing"] if any(each.steps for each in found.footings) else []
     final = found.final.best_combination if found.final else None
     best = name_in_row(final) if final else found.leader
     commands = [
-        ["run", *measured.words(0), "-o", "results", "--combinations", few],
+        ["run", *measured.words(0), *footing, "-o", "results", "--combinations", few],
         ["report", str(found.folder)],
         ["use", best, "--from", str(found.folder), "--as", "python"],
     ]

@@ -188,11 +188,10 @@ def _notes(found: Recommendation) -> list[str]:
     if len(seen.overlapping) < 5:
         more = "" if seen.unseen else "; give more images that overlap"
         notes.append(f"fewer than 5 pairs say little about other pairs{more}")
-    short = [each for each in found.footings if each.keypoints and not each.reached]
-    if short:
-        listed = ", ".join(f"{each.detector} {each.keypoints:,}" for each in short)
-        notes.append(f"even at their lowest thresholds these find fewer keypoints: {listed}")
-    return notes
+    from aerocues.pipeline.equal_footing import told_short
+
+    short = told_short(found.footings)
+    return [*notes, short] if short else notes
 
 
 def _width(shrunk: int) -> list[str]:

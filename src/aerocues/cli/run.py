@@ -86,6 +86,14 @@ def run(
             "--spread", help="With --max-keypoints: spread them over the parts of the image."
         ),
     ] = False,
+    equal_footing: Annotated[
+        bool | None,
+        typer.Option(
+            "--equal-footing/--no-equal-footing",
+            help="Lower thresholds of detectors until they find --max-keypoints; default: only for "
+            "tuned.",
+        ),
+    ] = None,
     pairs: PairsOption = None,
     subset: SubsetOption = None,
     band: BandOption = None,
@@ -174,6 +182,7 @@ def run(
             "preset": preset,
             "max_keypoints": max_keypoints,
             "spread": spread,
+            "equal_footing": equal_footing,
             "seed": seed,
             "timing": timing.value,
             "timing_pairs": timing_pairs,

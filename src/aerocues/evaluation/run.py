@@ -72,6 +72,7 @@ def run(
     preset: str | Preset = "default",
     max_keypoints: int = 0,
     spread: bool = False,
+    equal_footing: bool | None = None,
     seed: int = 0,
     timing: Timing = "exclusive",
     timing_pairs: int | None = None,
@@ -110,6 +111,9 @@ def run(
         The strongest keypoints that are kept in an image; 0 keeps all.
     spread : bool
         Keep the strongest of each part of the image, in place of the strongest of all.
+    equal_footing : bool, optional
+        Lower thresholds of detectors until they find `max_keypoints` in the middle image; by
+        default under the preset `tuned` alone.
     seed : int
         Set before every stage call.
     timing : {"exclusive", "shared", "estimated"}
@@ -149,19 +153,16 @@ def run(
         method that fails does not raise: its rows have a status and a message.
     """
     limit = keypoint_limit(max_keypoints, spread=spread)
-    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright)
+    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright, equal_footing)
     engines = _engines(asked, engine, workers, timeout, memory_limit)
     opened = as_dataset(dataset)
-    context = asked.context(opened)
-    if features is not None:
-        from aerocues.pipeline.feature_folder import checked_folder
-
-        context = replace(context, features=checked_folder(Path(features).absolute()))
+    kept_features = _feature_folder(features)
     kept = {"detectors": detectors, "descriptors": descriptors}
-    chosen = select(context.methods, combinations, **kept, everything=everything)
+    chosen = select(asked.context(opened).methods, combinations, **kept, everything=everything)
     store, told = Store.create(Path(output)), RunProgress(progress)
     opened = asked.measured(opened, told, store)
-    context = replace(context, dataset=opened, references=store.references)
+    asked = asked.with_thresholds(chosen, opened, told, store)
+    context = replace(asked.context(opened), features=kept_features, references=store.references)
     turns = asked.passes(opened)
     with store.writing():
         for number, turn in enumerate(turns):
@@ -175,6 +176,15 @@ def run(
             told.planned(plan, turn.timing)
             _measure(engines(turn.timing).run(plan.units, own, told.watch), store, told)
     return Results(store.folder)
+
+
+def _feature_folder(features: str | Path | None) -> Path | None:
+    """The folder in which features are kept, if any."""
+    if features is None:
+        return None
+    from aerocues.pipeline.feature_folder import checked_folder
+
+    return checked_folder(Path(features).absolute())
 
 
 def _engines(
@@ -234,6 +244,7 @@ def plan_run(
     preset: str | Preset = "default",
     max_keypoints: int = 0,
     spread: bool = False,
+    equal_footing: bool | None = None,
     seed: int = 0,
     timing: Timing = "exclusive",
     timing_pairs: int | None = None,
@@ -246,12 +257,14 @@ def plan_run(
     A flight whose pairs nobody chose is surveyed for it, about a second an image.
     """
     limit = keypoint_limit(max_keypoints, spread=spread)
-    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright)
+    asked = RunSettings(preset, seed, timing, timing_pairs, limit, upright, equal_footing)
     context, told = asked.context(dataset), RunProgress(progress)
     kept = {"detectors": detectors, "descriptors": descriptors}
     chosen = select(context.methods, combinations, **kept, everything=everything)
     store = Store.open(Path(output)) if (Path(output) / RUN).is_file() else None
-    context = replace(context, dataset=asked.measured(dataset, told, store, keep=False))
+    opened = asked.measured(dataset, told, store, keep=False)
+    asked = asked.with_thresholds(chosen, opened, told, store)
+    context = asked.context(opened)
     return [
         (turn.timing, _plan(context, chosen, turn, store, told.read, retry_failed=retry_failed))
         for turn in asked.passes(context.dataset)

@@ -22,11 +22,13 @@ class RunProgress:
         self._progress = progress
         self._reading = StageProgress(progress, "reading images", "images")
         self._surveying = StageProgress(progress, "surveying the flight", "images and pairs")
+        self._lowering = StageProgress(progress, "setting thresholds", "detectors")
         self._measuring = StageProgress(progress, "measuring", "rows")
         self._passes = 0
         self._cost_total = self._cost_done = 0.0
         self.read = self._reading.count
         self.surveyed = self._surveying.count
+        self.thresholds = self._lowering.count
         self.note = self._surveying.say
 
     def set_aside(self, rows: int) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from aerocues.arguments import check_choice, check_whole
@@ -10,9 +11,11 @@ from aerocues.datasets.dataset import Dataset
 from aerocues.defaults import RACE_PAIRS, TIMED_PAIRS
 from aerocues.errors import ArgumentError
 from aerocues.evaluation.context import make_context
+from aerocues.evaluation.footing import footing_wanted, preset_at_footing
 from aerocues.evaluation.passes import Pass, passes
 from aerocues.evaluation.run_progress import RunProgress
 from aerocues.evaluation.unit import Context
+from aerocues.methods.combination import Combination
 from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.strongest import KeypointLimit
 from aerocues.pipeline.flight_pairs import survey_flight, surveyed
@@ -34,10 +37,12 @@ class RunSettings:
     timing_pairs: int | None
     limit: KeypointLimit
     upright: bool = False
+    equal_footing: bool | None = None
 
     def __post_init__(self) -> None:
         check_choice("timing", self.timing, TIMINGS)
         check_whole("seed", self.seed, 0)
+        footing_wanted(self.parts, self.limit, self.equal_footing)
         if self.timing_pairs is None:
             return
         check_whole("timing_pairs", self.timing_pairs, 0)
@@ -57,6 +62,25 @@ class RunSettings:
         return make_context(
             dataset, self.parts, seed=self.seed, timing=self.timing, limit=self.limit
         )
+
+    def with_thresholds(
+        self,
+        chosen: Sequence[Combination],
+        dataset: Dataset,
+        told: RunProgress,
+        store: Store | None,
+    ) -> RunSettings:
+        """The settings with lowered thresholds of detectors, if `equal_footing` asks for these."""
+        if not footing_wanted(self.parts, self.limit, self.equal_footing):
+            return self
+        methods = self.context(dataset).methods
+        lowered = preset_at_footing(
+            *(self.parts, methods, dataset, chosen, self.limit),
+            seed=self.seed,
+            told=told,
+            store=store,
+        )
+        return replace(self, preset=lowered, equal_footing=False)
 
     def measured(
         self, dataset: Dataset, told: RunProgress, store: Store | None, *, keep: bool = True

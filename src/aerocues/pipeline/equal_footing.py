@@ -53,6 +53,13 @@ class Footing:
     reached: bool
 
 
+def told_short(footings: Sequence[Footing]) -> str:
+    """A sentence on the detectors that cannot reach the number; empty if all can."""
+    short = [each for each in footings if each.keypoints and not each.reached]
+    listed = ", ".join(f"{each.detector} {each.keypoints:,}" for each in short)
+    return f"even at their lowest thresholds these find fewer keypoints: {listed}" if short else ""
+
+
 def survey_image(images: Sequence[Image]) -> Image:
     """The image from which thresholds are set: the middle one, as flights begin over edges.
 
