@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,8 +23,8 @@ SIFT, KAZE = "SIFT-SIFT-L2-BF", "KAZE-KAZE-L2-BF"
 WANTED = 300
 
 
-def contrast_of(row: dict[str, object]) -> float:
-    return float(json.loads(str(row["parameters"]))["detector"][-1]["contrastThreshold"])
+def contrast_of(row: dict[str, Any]) -> float:
+    return float(json.loads(row["parameters"])["detector"][-1]["contrastThreshold"])
 
 
 @pytest.fixture
@@ -54,7 +55,7 @@ def test_thresholds_are_lowered_where_that_is_asked_for(faint: Dataset, tmp_path
 
 
 def test_tuned_reaches_the_number_unless_it_is_told_not_to(faint: Dataset, tmp_path: Path) -> None:
-    for asked, preset in {None: f"tuned-{WANTED}", False: "tuned"}.items():
+    for asked, preset in ((None, f"tuned-{WANTED}"), (False, "tuned")):
         results = run(
             *(faint, SIFT, tmp_path / preset),
             preset="tuned",
@@ -69,11 +70,11 @@ def test_tuned_reaches_the_number_unless_it_is_told_not_to(faint: Dataset, tmp_p
 
 def test_another_run_keeps_the_thresholds_of_the_first(faint: Dataset, tmp_path: Path) -> None:
     told: list[Event] = []
-    options = {"preset": "tuned", "max_keypoints": WANTED, "engine": InlineEngine()}
+    options: dict[str, Any] = {"preset": "tuned", "max_keypoints": WANTED, "engine": InlineEngine()}
     run(faint, SIFT, tmp_path / "r", **options)
     results = run(faint, KAZE, tmp_path / "r", **options)
     lowered = recorded_preset(results.settings).detectors
-    assert lowered["SIFT"]["contrastThreshold"] < 0.04
+    assert float(lowered["SIFT"]["contrastThreshold"]) < 0.04
     assert set(results.table()["detector"]) == {"KAZE", "SIFT"}
     both = run(faint, f"{SIFT},{KAZE}", tmp_path / "r", **options, progress=told.append)
     assert len(both.table()) == 2
@@ -91,7 +92,7 @@ def test_another_run_keeps_the_thresholds_of_the_first(faint: Dataset, tmp_path:
     [{"equal_footing": True}, {"equal_footing": True, "max_keypoints": 9, "preset": "thesis"}],
 )
 def test_there_must_be_a_number_to_reach(
-    wrong: dict[str, object], faint: Dataset, tmp_path: Path
+    wrong: dict[str, Any], faint: Dataset, tmp_path: Path
 ) -> None:
     with pytest.raises(ArgumentError):
         run(faint, SIFT, tmp_path / "r", **wrong)
