@@ -1,9 +1,10 @@
 """Makes the preset `tuned` that aerocues brings along: python benchmarks/tuned_preset.py WORK.
 
-Searched on a simulated flight and the Oxford sequences, judged on HPatches and real flights, which
-stand beside the project (AEROCUES_SHARED_DATA). Detectors are searched with the strongest 8,000
-keypoints of an image, descriptors with the strongest 2,000. Takes about two hours on two cores;
-interrupted, it goes on.
+Searched on a simulated flight and the Oxford sequences, judged on nine other scenes: two of
+HPatches, five projects and simulated flights over two other places. The real images stand beside
+the project (AEROCUES_SHARED_DATA). Detectors are searched with the strongest 8,000 keypoints of an
+image, descriptors with the strongest 2,000. Takes about two hours on two cores; interrupted, it
+goes on.
 """
 
 from __future__ import annotations
@@ -16,6 +17,10 @@ from pathlib import Path
 
 PRESET = Path(__file__).parent.parent / "src/aerocues/methods/tuned.json"
 SEARCHES = (("detector:all", 8000), ("descriptor:all", 2000))
+JUDGING = ("fields", "industrial")
+"""Scenes of simulated flights that settings are judged on."""
+PAIRS = 20
+"""Of the search, and as many to judge by: each project is among them."""
 GROUPS = ("detectors", "descriptors", "on_detectors", "thresholds")
 
 
@@ -29,13 +34,13 @@ def search(work: Path, methods: str, keypoints: int) -> Path:
     made = work / f"{methods.partition(':')[0]}.json"
     judges = (
         f"hpatches:{data / 'hpatches'}",
-        data / "flights" / "brighton_beach",
-        data / "flights" / "garfield_rgb",
+        f"uav:{data / 'pairs'}",
+        *(f"simulated:{work / scene}" for scene in JUDGING),
     )
     aerocues(
         *("tune", methods, f"oxford:{data / 'oxford'}", f"simulated:{work / 'flight'}"),
         *(word for judge in judges for word in ("--validate", judge)),
-        *("-o", made, "--max-keypoints", keypoints, "--max-pairs", 16),
+        *("-o", made, "--max-keypoints", keypoints, "--max-pairs", PAIRS),
     )
     return made
 
@@ -44,6 +49,9 @@ def main() -> None:
     work = Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
     aerocues("simulate", "-o", work / "flight", "--survey", "airsimnh", "--subset", "Layer3")
+    for scene in JUDGING:
+        flight = ("--survey", "mini", "--size", "1000x666", "--scene", scene)
+        aerocues("simulate", "-o", work / scene, *flight)
     parts = [json.loads(search(work, *each).read_text()) for each in SEARCHES]
     merged = {
         "name": "tuned",

@@ -74,7 +74,10 @@ def _descriptor(method: str, partner: str, **values: tuple[Value, ...]) -> Grid:
 _FAST, _AGAST = "FastFeatureDetector", "AgastFeatureDetector"
 GRIDS: tuple[Grid, ...] = (
     _detector(
-        "SIFT", "SIFT", contrastThreshold=(0.02, 0.03, 0.04), edgeThreshold=(10.0, 15.0, 20.0)
+        "SIFT",
+        "SIFT",
+        contrastThreshold=(0.005, 0.01, 0.02, 0.03, 0.04),
+        edgeThreshold=(10.0, 15.0, 20.0),
     ),
     _detector(
         "AKAZE",
