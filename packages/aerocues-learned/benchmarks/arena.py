@@ -162,8 +162,9 @@ def pair_lines(root: Path, names: Sequence[str]) -> Iterator[str]:
 
 def model_lines(folder: Path) -> Iterator[str]:
     """The table of the models of one flight."""
-    yield "| combination | images | points | error (px) | track | CPU s | quality |"
-    yield "|---|---|---|---|---|---|---|"
+    heads = ("images", "points", "error (px)", "cameras off (m)", "track", "CPU s", "quality")
+    yield f"| combination | {' | '.join(heads)} |"
+    yield "|---|---|---|---|---|---|---|---|"
     table = aerocues.Models(folder).table().with_columns(combination_name())
     for row in table.sort("model_quality", descending=True, nulls_last=True).iter_rows(named=True):
         placed = row["placed_images"] if row["placed_images"] is not None else "?"
@@ -171,6 +172,7 @@ def model_lines(folder: Path) -> Iterator[str]:
             f"{row['registered_images'] or 0} ({placed} in place) of {row['images']}",
             f"{row['points_3d'] or 0:,}",
             f"{row['reprojection_error'] or 0:.2f}",
+            "" if row["position_rmse"] is None else f"{row['position_rmse']:.3f}",
             f"{row['mean_track_length'] or 0:.1f}",
             f"{row['reconstruction_seconds'] or 0:.0f}",
             f"{row['model_quality'] or 0:.0f}",
