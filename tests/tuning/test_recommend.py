@@ -168,8 +168,9 @@ def test_the_next_commands_have_the_options_and_suit_the_images(
         "--max-keypoints", 900,
     )  # fmt: skip
     assert answer.code == 0, answer.err
-    for command in ("reconstruct", "run"):
-        assert f" aerocues {command} {photos} {same.format('900 ')} -o" in answer.out
+    for command, footing in (("reconstruct", ""), ("run", " --equal-footing")):
+        asked = f"{same.format('900 ')}{footing}"
+        assert f" aerocues {command} {photos} {asked} -o" in answer.out
     assert f"-HAM-BF --from {tmp_path / 'a'} --as python" in answer.out
 
     flat = call(
@@ -177,7 +178,8 @@ def test_the_next_commands_have_the_options_and_suit_the_images(
     )
     assert flat.code == 0, flat.err
     assert "reconstruct" not in flat.out
-    assert f"aerocues run synthetic:{photos}/0.png --max-keypoints 8000 -o" in flat.out
+    asked = "--max-keypoints 8000 --equal-footing"
+    assert f"aerocues run synthetic:{photos}/0.png {asked} -o" in flat.out
 
 
 @pytest.mark.parametrize(
