@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 
-from docs.study_parts import NOT_YET, REPOSITORY, Parts
+from docs.study_parts import NOT_YET, Parts
 from docs.study_queries import markdown
+from study.measure import DATA
 
 PUBLISHED = "published/measurements.parquet"
 PART = "oxford-thesis"
@@ -73,7 +73,7 @@ def lost(ratios: pl.DataFrame, by: str) -> str:
 class Published(Parts):
     """Statements about the published measurements, which are in no repository."""
 
-    data: Path = Path(os.environ.get("AEROCUES_SHARED_DATA", REPOSITORY.parent / "shared/data"))
+    data: Path = DATA
 
     def stale_keypoints(self) -> str | None:
         """What looking matches up in old keypoints did; None where its figures are missing."""

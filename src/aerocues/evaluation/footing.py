@@ -26,7 +26,7 @@ def footing_wanted(preset: Preset, limit: KeypointLimit, asked: bool | None) -> 
         If it is asked for, but there is no number to reach, or the preset keeps its thresholds.
     """
     if asked is None:
-        return preset.name == TUNED and bool(limit.count)
+        return preset.name == TUNED and limit.count > 0
     if asked and not limit.count:
         raise ArgumentError(
             "`equal_footing` lowers thresholds until `max_keypoints` are found; give that number"
