@@ -10,6 +10,7 @@ from aerocues.tuning.search_objective import mean_gain, search_objective
 def test_one_criterion_counts_by_its_mean_and_a_failure_by_the_worst() -> None:
     values = np.array([[[10.0], [20.0]], [[np.nan], [40.0]]])
     inliers = search_objective("excess_inliers")
+    assert not inliers.reference
     np.testing.assert_allclose(inliers.scores(values), [15.0, 20.0])
     np.testing.assert_allclose(inliers.on_others(values, values), [[10, 20], [0, 40]])
     seconds = search_objective("total_seconds")
@@ -19,6 +20,7 @@ def test_one_criterion_counts_by_its_mean_and_a_failure_by_the_worst() -> None:
 def test_cues_ranks_what_is_better_in_everything_first() -> None:
     rng = np.random.default_rng(0)
     cues = search_objective("cues")
+    assert cues.reference  # right matches count, as where combinations are scored
     costs = np.array([criterion.better == "lower" for criterion in cues.criteria])
     quality = np.array([0.2, 0.8, 0.5])[:, None, None] + 0.05 * rng.random((3, 6, len(costs)))
     values = np.where(costs, 1 - quality, quality)

@@ -6,6 +6,8 @@ import json
 import shutil
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from aerocues.methods.presets import preset_named
@@ -83,6 +85,21 @@ def test_two_pairs_judge_nothing(call: Call, scenes: Path, tmp_path: Path) -> No
     answer = tune(call, "LATCH", few, preset)
     assert answer.code == 0, answer.err
     assert "descriptor LATCH: default; " in answer.err
+    assert json.loads(preset.read_text())["descriptors"] == {}
+
+
+def test_pairs_without_a_reference_tell_nothing(call: Call, tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    for scene in ("north", "south"):
+        for number in range(4):
+            noise = rng.integers(0, 256, (120, 160), np.uint8)
+            (tmp_path / "noise" / scene).mkdir(parents=True, exist_ok=True)
+            cv2.imwrite(str(tmp_path / "noise" / scene / f"{number}.png"), noise)
+    preset, grid = tmp_path / "brief.json", tmp_path / "grid.json"
+    grid.write_text(json.dumps({"bytes": [32, 64]}))
+    answer = tune(call, "BRIEF", tmp_path / "noise", preset, "--grid", grid)
+    assert answer.code == 0, answer.err
+    assert "too few pairs have a reference of right matches" in answer.err
     assert json.loads(preset.read_text())["descriptors"] == {}
 
 

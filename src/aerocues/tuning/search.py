@@ -27,6 +27,7 @@ KEPT = 0.34
 FEWEST_PAIRS, FEWEST_KEPT = 3, 4
 FEWEST_TO_JUDGE = 3
 """Validation pairs: with two, any test takes chance gains as proof too often."""
+NO_REFERENCE = "too few pairs have a reference of right matches; try --objective excess_inliers"
 
 
 @dataclass(frozen=True)
@@ -130,13 +131,14 @@ class Search:
         candidates = list(range(len(space.settings)))
         if len(candidates) > LARGE_GRID:
             part = training[: max(round(FIRST_PART * len(training)), FEWEST_PAIRS)]
-            scores = objective.scores(self._values(space, candidates, part, objective))
-            count = max(round(KEPT * len(candidates)), FEWEST_KEPT)
-            kept = [int(each) for each in np.argsort(-scores, kind="stable")[:count]]
-            candidates = sorted({0, *kept})
-        values = self._values(space, candidates, training, objective)
+            telling, values = self._values(space, candidates, part, objective)
+            if telling:  # they choose; else all are measured on all pairs
+                candidates = _better_third(objective.scores(values))
+        training, values = self._values(space, candidates, training, objective)
         if time.monotonic() >= self._deadline:
             return _kept(space, len(space.settings), "time was up")
+        if not training:
+            return _kept(space, len(space.settings), NO_REFERENCE)
         if np.isnan(values).all():
             return _kept(space, len(space.settings), "everything failed")
         best = candidates[int(np.argmax(objective.scores(values)))]
@@ -152,10 +154,12 @@ class Search:
         training: Array,
         objective: SearchObjective,
     ) -> Finding:
-        values = self._values(space, [0, best], pairs, objective)
+        pairs, values = self._values(space, [0, best], pairs, objective)
         setting, tried = space.settings[best], len(space.settings)
         if time.monotonic() >= self._deadline:
             return _kept(space, tried, "time was up")
+        if len(pairs) < FEWEST_TO_JUDGE:
+            return _kept(space, tried, NO_REFERENCE)
         first, second = objective.on_others(training, values)
         scenes = [self._scene(each) for each in pairs]
         gain, low, high = mean_gain(second - first, scenes)
@@ -216,8 +220,10 @@ class Search:
         candidates: Sequence[int],
         pairs: Sequence[tuple[int, int]],
         objective: SearchObjective,
-    ) -> Array:
-        """(A, P, C) values; NaN where a candidate failed or was not measured."""
+    ) -> tuple[list[tuple[int, int]], Array]:
+        """Pairs that tell, and (A, P, C) values; NaN where one failed or was not measured."""
+        self._rows(space, candidates, pairs)
+        pairs = self._telling(pairs, objective)
         rows = self._rows(space, candidates, pairs)
         values = np.full((len(rows), len(objective.criteria)), np.nan)
         known = [place for place, row in enumerate(rows) if row is not None]
@@ -225,7 +231,16 @@ class Search:
             values[known] = criterion_values(
                 [row for row in rows if row is not None], objective.criteria
             )
-        return values.reshape(len(candidates), len(pairs), -1)
+        return pairs, values.reshape(len(candidates), len(pairs), len(objective.criteria))
+
+    def _telling(
+        self, pairs: Sequence[tuple[int, int]], objective: SearchObjective
+    ) -> list[tuple[int, int]]:
+        """Pairs that tell candidates apart: without a reference, no match is known to be right."""
+        if not objective.reference:
+            return list(pairs)
+        silent = [dataset.evaluator.without_reference() for dataset in self._datasets]
+        return [each for each in pairs if each[1] not in silent[each[0]]]
 
     def _figures(
         self, space: SearchSpace, candidate: int, pairs: Sequence[tuple[int, int]]
@@ -247,6 +262,12 @@ class Search:
             pl.col("total_seconds").median(),
         ).row(0)
         return Figures(*row)
+
+
+def _better_third(scores: Array) -> list[int]:
+    """The default, and the candidates of the highest scores."""
+    count = max(round(KEPT * len(scores)), FEWEST_KEPT)
+    return sorted({0, *(int(each) for each in np.argsort(-scores, kind="stable")[:count])})
 
 
 def _kept(space: SearchSpace, tried: int, why_not: str) -> Finding:

@@ -44,6 +44,11 @@ class SearchObjective:
     objective: Objective | None = None
     settings: ScoreSettings = ScoreSettings()  # noqa: RUF009 - it is frozen
 
+    @property
+    def reference(self) -> bool:
+        """Whether only pairs with a reference tell candidates apart."""
+        return any(criterion.reference for criterion in self.criteria)
+
     def scores(self, training: Array) -> Array:
         """(A,) scores of candidates from (A, P, C) values; NaN where one failed."""
         return np.asarray(self._valued(training, training, None).mean(axis=1))
@@ -82,7 +87,7 @@ class SearchObjective:
 
 
 def search_objective(name: str) -> SearchObjective:
-    """CUES with the default preset of scoring, or a criterion by its name.
+    """CUES with the default preset of scoring, without its links, or a criterion by its name.
 
     Raises
     ------
@@ -90,7 +95,7 @@ def search_objective(name: str) -> SearchObjective:
         If there is no such criterion, or it is a criterion of 3D models.
     """
     if name.lower() == CUES:
-        preset = score_preset_named("inliers")
+        preset = score_preset_named("default")
         criteria = tuple(criteria_named(preset.criteria))
         return SearchObjective(criteria, OBJECTIVES["efficiency"], preset.settings)
     [criterion] = criteria_named([name])
