@@ -37,7 +37,7 @@ def tuned() -> Iterator[tuple[str, ...]]:
     """One row a search of the preset `tuned`."""
     yield (
         *("searched", "best setting", "used", "gain in CUES (95 %)"),
-        *("inlier ratio", "inliers", "true precision"),
+        *("inliers", "right matches", "share right"),
     )
     for part in tuned_record()["made"]:
         for search in part["searches"]:
@@ -49,29 +49,14 @@ def _searched(search: Mapping[str, Any]) -> tuple[str, ...]:
         return (search["search_space"], "default", "", *("",) * 4)
     low, high = search["interval"]
     before, after = search["default"], search["tuned"]
-    figures = (
-        (before[name], after[name]) for name in ("inlier_ratio", "inliers", "true_precision")
-    )
+    figures = ((before[name], after[name]) for name in ("inliers", "right_matches", "right_share"))
     return (
         search["search_space"],
         parameters_text({name: _constant(value) for name, value in search["best"].items()}),
-        _used(search),
+        "yes" if search["kept"] else "no",
         f"{search['gain']:+.3f} ({low:+.3f} to {high:+.3f})",
         *(
             "" if None in (old, new) else f"{old:{form}} to {new:{form}}"
-            for (old, new), form in zip(figures, (".2f", ",.0f", ".2f"), strict=True)
+            for (old, new), form in zip(figures, (",.0f", ",.0f", ".2f"), strict=True)
         ),
     )
-
-
-def _used(search: Mapping[str, Any]) -> str:
-    """Whether a setting is used, and whether it still would be with an interval twice as wide.
-
-    Records without the scenes that judged are of a time when intervals came from resamples of the
-    pairs: over the scenes, Student's t is about twice as wide.
-    """
-    if not search["kept"]:
-        return "no"
-    wider = 1.0 if "judged_by" in search else 2.0
-    gain, low = search["gain"], search["interval"][0]
-    return "yes" if gain - wider * (gain - low) > 0 else "yes, not sure"

@@ -162,7 +162,7 @@ def table(findings: list[Finding]) -> Table:
     from aerocues.cli.console import plain_table
     from aerocues.tuning.search_progress import setting_text
 
-    headings = ("gain", "at least", "inlier ratio", "inliers", "true precision")
+    headings = ("gain", "at least", "inliers", "right matches", "share right")
     output = plain_table("searched", "best", "kept", *headings, numbers=len(headings))
     output.columns[0].no_wrap = True
     for finding in findings:
@@ -172,9 +172,9 @@ def table(findings: list[Finding]) -> Table:
             figures = [
                 f"{finding.gain:+.3f}",
                 f"{finding.low:+.3f}",
-                _change(default.inlier_ratio, tuned.inlier_ratio, ".2f"),
                 _change(default.inliers, tuned.inliers, ",.0f"),
-                _change(default.true_precision, tuned.true_precision, ".2f"),
+                _change(default.right_matches, tuned.right_matches, ",.0f"),
+                _change(default.right_share, tuned.right_share, ".2f"),
             ]
         kept = "yes" if finding.pays else "no"
         output.add_row(finding.space.name, setting_text(finding.best), kept, *figures)

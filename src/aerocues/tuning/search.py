@@ -9,8 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from aerocues.evaluation.engine import Engine
+from aerocues.pipeline.reference import FLOW
 from aerocues.progress import Activity
 from aerocues.results.metrics import Row
+from aerocues.scoring.criteria import RIGHT_MATCHES
 from aerocues.tuning.grids import Setting
 from aerocues.tuning.image_evaluator import criterion_values, rows_frame
 from aerocues.tuning.pair_evaluator import PairEvaluator
@@ -32,12 +34,16 @@ NO_REFERENCE = "too few pairs have a reference of right matches; try --objective
 
 @dataclass(frozen=True)
 class Figures:
-    """Mean figures of a candidate over pairs; a failed pair counts as 0."""
+    """Mean figures of a candidate over pairs; a failed pair counts as 0.
+
+    Right matches and their share are by the reference, None without one; the share and the median
+    of the seconds are of the pairs that have them.
+    """
 
     success: float
-    inlier_ratio: float
     inliers: float
-    true_precision: float | None
+    right_matches: float | None
+    right_share: float | None
     seconds: float | None
 
 
@@ -249,16 +255,13 @@ class Search:
 
         rows = [row for row in self._rows(space, [candidate], pairs) if row is not None]
         table = rows_frame(rows)
-        ok = pl.col("status") == "ok"
-
-        def mean(name: str) -> pl.Expr:
-            return pl.when(ok).then(pl.col(name)).otherwise(0.0).mean().alias(name)
-
+        ok, referenced = pl.col("status") == "ok", (table["reference"] == FLOW).any()
+        right = pl.when(ok).then(pl.col(RIGHT_MATCHES)).fill_null(0.0).mean()
         row = table.select(
             ok.mean().alias("success"),
-            mean("precision_beyond_chance"),
-            mean("excess_inliers"),
-            pl.col("gt_precision@3").mean(),
+            pl.when(ok).then(pl.col("excess_inliers")).otherwise(0.0).mean().alias("inliers"),
+            right.alias("right") if referenced else pl.lit(None).alias("right"),
+            pl.col("ref_precision@3").mean(),
             pl.col("total_seconds").median(),
         ).row(0)
         return Figures(*row)
