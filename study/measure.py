@@ -27,6 +27,7 @@ from aerocues.progress import Event
 from aerocues.results.store import RUN
 from aerocues.results.study import FACTS, add_part
 from study.flights import make_flight
+from study.outdated import drop_outdated
 from study.plan import CONFIGURATION, FOLDER, UNFINISHED, Plan, Step, images_of, read_plan
 
 DATABASE, WORK = FOLDER / "database", FOLDER / "work"
@@ -163,10 +164,12 @@ class Study:
         return new.equals(kept)
 
     def _restore(self, step: Step) -> None:
-        """Go on from the database where the results folder is gone, as in a new checkout."""
+        """Go on from the database where the results folder is gone, without outdated rows."""
         kept, folder = self.database / step.part.name, self.work / step.part.name
         if (kept / RUN).is_file() and not (folder / RUN).is_file():
             shutil.copytree(kept, folder, dirs_exist_ok=True)
+        if (folder / RUN).is_file() and (number := drop_outdated(folder, step.part)):
+            self.tell(f"{step.part.name}: {count(number, 'row')} of other parameters left out")
 
     def dataset(self, step: Step) -> aerocues.Dataset:
         """The images of a step, with the pairs to measure."""

@@ -12,11 +12,14 @@ from typing import Any
 
 from aerocues.errors import ArgumentError
 from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import as_preset
 from aerocues.methods.selection import select
 from aerocues.results.hashing import content_hash
 
 FOLDER = Path(__file__).resolve().parent
 CONFIGURATION = FOLDER / "study.toml"
+FIXED = ("default", "thesis")
+"""Presets whose parameters never change."""
 UNFINISHED = 3
 """Exit code where something is left to measure."""
 
@@ -99,12 +102,15 @@ class Step:
         return f"{self.part.name} {self.short_name}"
 
     def asked(self) -> str:
-        """A hash of what the configuration asks of it.
+        """A hash of what the configuration asks of it, and of the parameters of its preset.
 
         The settings of flights and versions of software are not in it: after a change there, remove
         the part from the database and its work folder. ``seconds_per_row`` is in it without need.
         """
         terms = asdict(self.part) | {"round": asdict(self.round) if self.round else None}
+        preset = as_preset(self.part.run.get("preset", "default"))
+        if preset.name not in FIXED:
+            terms["parameters"] = asdict(preset)
         told = ("title", "licence", "pairs", "rounds", "factor")
         return content_hash({name: value for name, value in terms.items() if name not in told})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -205,6 +205,13 @@ class Store(ReconstructionStore):
         new = with_all_columns(rows)
         old = self.plan() if (self.folder / PLAN).is_file() else new.clear()
         self._write(self.folder / PLAN, parquet_content(merge_plans(old, new)))
+
+    def leave_out(self, row_keys: Collection[str]) -> None:
+        """Take rows out of the plan; what was measured stays in the folder, and counts no more."""
+        import polars as pl
+
+        kept = self.plan().filter(~pl.col("row_key").is_in(list(row_keys)))
+        self._write(self.folder / PLAN, parquet_content(kept))
 
     def plan(self) -> pl.DataFrame:
         """All planned rows, under all settings."""

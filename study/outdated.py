@@ -1,0 +1,49 @@
+"""Rows of a part that were measured with other parameters than its preset has by now."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import aerocues
+from aerocues.methods.combination import Combination
+from aerocues.methods.plugins import installed_methods
+from aerocues.methods.presets import as_preset
+from aerocues.methods.registry import Methods
+from aerocues.methods.strongest import keypoint_limit
+from aerocues.results.combination_columns import name_in_row
+from aerocues.results.store import Store
+from study.plan import Part
+
+
+def drop_outdated(folder: Path, part: Part) -> int:
+    """Take rows with outdated parameters out of the plan of a results folder; how many.
+
+    Otherwise they would stand beside new ones until each round was measured again. Rows of methods
+    that are not installed stay.
+    """
+    preset = as_preset(part.run.get("preset", "default"))
+    limit = keypoint_limit(part.run.get("max_keypoints", 0))
+    methods = limit.limited(installed_methods().with_preset(preset))
+    rows = aerocues.Results(folder).table()
+    rows = rows.filter(rows["preset"] == preset.name).sort("detector")
+    outdated = {
+        row["row_key"]
+        for row in rows.iter_rows(named=True)
+        if (now := _parameters(methods, name_in_row(row))) and row["parameters"] != now
+    }
+    if outdated:
+        store = Store.open(folder)
+        with store.writing():
+            store.leave_out(outdated)
+    return len(outdated)
+
+
+def _parameters(methods: Methods, name: str) -> str:
+    """What a row would record; empty if a method is not installed."""
+    combination = Combination.parse(name)
+    known = (methods.detectors, methods.descriptors, methods.matchers)
+    own = (combination.detector, combination.descriptor, combination.matcher)
+    if not all(each in table for each, table in zip(own, known, strict=True)):
+        return ""
+    return json.dumps(methods.parameters(combination), sort_keys=True)
