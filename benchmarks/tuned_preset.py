@@ -16,7 +16,13 @@ import sys
 from pathlib import Path
 
 PRESET = Path(__file__).parent.parent / "src/aerocues/methods/tuned.json"
-SEARCHES = (("detector:all", 8000), ("descriptor:all", 2000))
+QUICK = "AKAZE BRISK KAZE DAISY FREAK BRIEF LUCID LATCH BEBLID TEBLID"
+SEARCHES = (
+    ("detectors", "detector:all", 8000),
+    ("descriptors", ",".join(f"descriptor:{name}" for name in QUICK.split()), 2000),
+    ("slow-descriptors", "descriptor:VGG,descriptor:BOOST", 2000),
+)
+"""Name of the file, methods and keypoints; what takes half of the time comes last."""
 JUDGING = ("fields", "industrial")
 """Scenes of simulated flights that settings are judged on."""
 PAIRS = 20
@@ -28,10 +34,10 @@ def aerocues(*words: object) -> None:
     subprocess.run([sys.executable, "-m", "aerocues", *map(str, words)], check=True)
 
 
-def search(work: Path, methods: str, keypoints: int) -> Path:
+def search(work: Path, name: str, methods: str, keypoints: int) -> Path:
     """One search; the file of its preset."""
     data = Path(os.environ.get("AEROCUES_SHARED_DATA", "../shared/data"))
-    made = work / f"{methods.partition(':')[0]}.json"
+    made = work / f"{name}.json"
     judges = (
         f"hpatches:{data / 'hpatches'}",
         f"uav:{data / 'pairs'}",

@@ -69,7 +69,7 @@ def test_a_detector_takes_along_what_its_own_descriptor_shares() -> None:
 def test_a_descriptor_is_searched_by_itself_and_on_each_detector() -> None:
     first, *others = search_spaces_of("beblid", METHODS)
     assert (first.kind, first.name) == ("descriptor", "descriptor BEBLID")
-    on = [name for name, row in METHODS.detectors.items() if not row.of_pairs]
+    on = [name for name, row in METHODS.detectors.items() if not row.on_request]
     assert [each.combination.detector for each in others] == on
     assert others[2].name == "BEBLID on ORB"
     preset = first.applied(EMPTY, {"n_bits": 101}, METHODS)

@@ -226,8 +226,9 @@ def _of_grid(row: Grid, methods: Methods) -> list[SearchSpace]:
         settings = tuple(settings_of(row.on_each_detector, default))
         found += [
             SearchSpace("pair", own, settings)
-            for detector in methods.detectors
-            if why_incompatible(own := _judged(detector, row.method, methods), methods) is None
+            for detector, known in methods.detectors.items()
+            if not known.on_request
+            and why_incompatible(own := _judged(detector, row.method, methods), methods) is None
         ]
     return found
 
