@@ -8,7 +8,6 @@ from pathlib import Path
 import aerocues
 from aerocues.methods.combination import Combination
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import as_preset
 from aerocues.methods.registry import Methods
 from aerocues.methods.strongest import keypoint_limit
 from aerocues.results.combination_columns import name_in_row
@@ -22,7 +21,7 @@ def drop_outdated(folder: Path, part: Part) -> int:
     Otherwise they would stand beside new ones until each round was measured again. Rows of methods
     that are not installed stay.
     """
-    preset = as_preset(part.run.get("preset", "default"))
+    preset = part.preset
     limit = keypoint_limit(part.run.get("max_keypoints", 0))
     methods = limit.limited(installed_methods().with_preset(preset))
     rows = aerocues.Results(folder).table()

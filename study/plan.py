@@ -12,7 +12,7 @@ from typing import Any
 
 from aerocues.errors import ArgumentError
 from aerocues.methods.plugins import installed_methods
-from aerocues.methods.presets import as_preset
+from aerocues.methods.presets import Preset, as_preset
 from aerocues.methods.selection import select
 from aerocues.results.hashing import content_hash
 
@@ -79,6 +79,11 @@ class Part:
     run: Mapping[str, Any] = field(default_factory=dict)
     models: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def preset(self) -> Preset:
+        """The preset that it is measured under."""
+        return as_preset(self.run.get("preset", "default"))
+
 
 MODELS = "models"
 """The step after all rounds of a part that has models."""
@@ -102,17 +107,21 @@ class Step:
         return f"{self.part.name} {self.short_name}"
 
     def asked(self) -> str:
-        """A hash of what the configuration asks of it, and of the parameters of its preset.
+        """A hash of what the configuration asks of it, and of the parameters of its methods.
 
         The settings of flights and versions of software are not in it: after a change there, remove
         the part from the database and its work folder. ``seconds_per_row`` is in it without need.
         """
         terms = asdict(self.part) | {"round": asdict(self.round) if self.round else None}
-        preset = as_preset(self.part.run.get("preset", "default"))
-        if preset.name not in FIXED:
-            terms["parameters"] = asdict(preset)
+        if self.part.preset.name not in FIXED:
+            terms["parameters"] = self._parameters()
         told = ("title", "licence", "pairs", "rounds", "factor")
         return content_hash({name: value for name, value in terms.items() if name not in told})
+
+    def _parameters(self) -> dict[str, object]:
+        """Parameters of its methods, by combination."""
+        methods = installed_methods().with_preset(self.part.preset)
+        return {str(each): methods.parameters(each) for each in select(methods, self.combinations)}
 
     @property
     def combinations(self) -> str:

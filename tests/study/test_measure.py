@@ -273,5 +273,5 @@ def test_an_engine_that_cannot_be_is_refused(words: list[str], measured: Path) -
 
 
 def test_what_is_finished_stays_finished() -> None:
-    hashes = {step.name: step.asked() for step in read_plan().steps}
+    hashes = {step.name: step.asked() for step in read_plan().steps if not step.missing()}
     assert hashes["oxford-thesis exact"] == "e006ee2747e2b70bc15b92e30744b094"
