@@ -118,7 +118,7 @@ def test_the_preset_tuned_holds_what_its_searches_kept_and_nothing_else() -> Non
         *(f"descriptor {name}" for name in preset.descriptors),
     }
     assert preset.chance_test
-    assert preset.descriptors["LATCH"] == {"bytes": 64}
+    assert preset.descriptors["LATCH"]["bytes"] == 64
 
 
 def test_the_preset_tuned_was_judged_on_scenes_that_it_was_not_chosen_by() -> None:
