@@ -25,7 +25,7 @@ def drop_outdated(folder: Path, part: Part) -> int:
     limit = keypoint_limit(part.run.get("max_keypoints", 0))
     methods = limit.limited(installed_methods().with_preset(preset))
     rows = aerocues.Results(folder).table()
-    rows = rows.filter(rows["preset"] == preset.name).sort("detector")
+    rows = rows.filter(rows["preset"] == preset.name)
     outdated = {
         row["row_key"]
         for row in rows.iter_rows(named=True)
