@@ -3,8 +3,8 @@
 Searched on a simulated flight and the Oxford sequences, judged on nine other scenes: two of
 HPatches, five projects and simulated flights over two other places. The real images stand beside
 the project (AEROCUES_SHARED_DATA). Detectors are searched with the strongest 8,000 keypoints of an
-image, descriptors with the strongest 2,000. Takes about two hours on two cores; interrupted, it
-goes on.
+image, descriptors with the strongest 2,000. Takes about an hour and a half on two cores;
+interrupted, it goes on.
 """
 
 from __future__ import annotations
