@@ -13,6 +13,8 @@ from aerocues.phrases import count, likelihood
 from aerocues.results.timing import DISTURBED
 from docs.study_parts import MOST_NAMED, NOT_YET, Parts
 from docs.study_queries import console, markdown
+from study.outdated import outdated_rows
+from study.plan import read_plan
 
 CONDITIONS: tuple[tuple[str, str, str], ...] = (
     ("nadir, strips there and back (turned by 180°)", "brighton-flown-tuned", "reconstruction"),
@@ -123,8 +125,16 @@ class Answers(Parts):
             f"{parts['cpu_hours'].sum():.2f} CPU hours for {parts['covered'].sum():,} of these "
             "(of the others none are known). "
             f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
-            f"{parts['identical'].sum():,} with identical quality."
+            f"{parts['identical'].sum():,} with identical quality.{self._outdated(table)}"
         )
+
+    def _outdated(self, table: pl.DataFrame) -> str:
+        """How many rows have other parameters than their preset has by now."""
+        parts = {step.part.name: step.part for step in read_plan().steps}
+        rows = [table.filter(pl.col("part") == name) for name in parts]
+        number = sum(map(len, map(outdated_rows, rows, parts.values())))
+        told = "with parameters that their preset had before: the next `make study` replaces them"
+        return f" {count(number, 'row')} {told}." if number else ""
 
     @cached_property
     def findings(self) -> Mapping[str, Finding]:

@@ -21,7 +21,7 @@ from study.plan import UNFINISHED, Step
 if TYPE_CHECKING:
     import polars as pl
 
-    from study.measure import Study
+    from study.measuring import Study
 
 SHARE = 0.05
 SHOWN = 5

@@ -17,7 +17,8 @@ import pytest
 import aerocues
 from aerocues.errors import ArgumentError
 from study.flights import make_flight
-from study.measure import Study, main
+from study.measure import main
+from study.measuring import Study
 from study.plan import CONFIGURATION, read_plan
 from study.verify import differing
 from tests.cli.conftest import shared_views
@@ -157,6 +158,12 @@ def test_rows_of_other_parameters_are_measured_again(measured: Path, tmp_path: P
     study.make(plan.of(["views"])[0])
     rows = aerocues.Study(tmp_path / "database").table()
     assert rows["matcher"].unique().to_list() == ["BF"]
+    steps = study.steps("views")
+    assert {name: bool(step["finished"]) for name, step in steps.items()} == {
+        "first": True,
+        "second": False,
+    }
+    assert sum(step["rows"] for step in steps.values()) == len(rows) == 6
 
 
 def test_what_is_asked_for_must_exist(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
