@@ -129,7 +129,10 @@ def test_a_stage_that_takes_too_long_is_ended(
     options = {**quick, "timeout": 0.02}
     row = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert row["status"] == "timeout"
-    assert "0.02 CPU seconds" in row["message"]
+    # A busy machine may give it no core in so short a time.
+    told = ("used more than 0.02 CPU seconds", "sat idle for 0.02 seconds")
+    assert row["message"].startswith("detect SIFT on view_0.png ")
+    assert row["message"].endswith(told)
     same = only_row(landscape, empty, options, "SIFT-SIFT-L2-FLANN")
     assert same["reconstructed_at"] == row["reconstructed_at"]
     # With more time it is tried again by itself.

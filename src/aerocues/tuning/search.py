@@ -29,7 +29,7 @@ KEPT = 0.34
 FEWEST_PAIRS, FEWEST_KEPT = 3, 4
 FEWEST_TO_JUDGE = 3
 """Validation pairs: with two, any test takes chance gains as proof too often."""
-NO_REFERENCE = "too few pairs have a reference of right matches; try --objective excess_inliers"
+NO_REFERENCE = "too few pairs have a reference of right matches; choose another objective"
 
 
 @dataclass(frozen=True)
