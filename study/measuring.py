@@ -18,7 +18,7 @@ from aerocues.results.store import RUN
 from aerocues.results.study import FACTS, add_part
 from study.flights import make_flight
 from study.outdated import drop_outdated
-from study.plan import Plan, Step, images_of
+from study.plan import MODELS, Plan, Step, images_of
 
 TOLD_EVERY = 60.0
 
@@ -155,8 +155,8 @@ class Study:
             return {name: dict(told) for name, told in steps.items()}
         return {
             name: {
-                "seconds": told["seconds"] * share,
-                "rows": round(told["rows"] * share),
+                "seconds": told["seconds"] * (1.0 if name == MODELS else share),
+                "rows": told["rows"] if name == MODELS else round(told["rows"] * share),
                 "finished": None,
             }
             for name, told in steps.items()

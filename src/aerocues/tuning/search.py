@@ -198,10 +198,10 @@ class Search:
         images = dataset.pair(pair[1])
         return images.homography is not None or dataset.true_views(images) is not None
 
-    def _rows(
+    def _measure(
         self, space: SearchSpace, candidates: Sequence[int], pairs: Sequence[tuple[int, int]]
-    ) -> list[Row | None]:
-        """Rows of each candidate on each pair, candidate after candidate."""
+    ) -> None:
+        """Measure what is missing of each candidate on each pair."""
         named = [space.variant(candidate) for candidate in candidates]
         for number, dataset in enumerate(self._datasets):
             asked = [
@@ -214,9 +214,14 @@ class Search:
             dataset.evaluator.measure(
                 asked, dataset.engine, deadline=self._deadline, watch=self._watch
             )
+
+    def _rows(
+        self, space: SearchSpace, candidates: Sequence[int], pairs: Sequence[tuple[int, int]]
+    ) -> list[Row | None]:
+        """Measured rows of each candidate on each pair, candidate after candidate."""
         return [
-            self._datasets[place].evaluator.row((pair, each))
-            for each in named
+            self._datasets[place].evaluator.row((pair, space.variant(candidate)))
+            for candidate in candidates
             for place, pair in pairs
         ]
 
@@ -228,7 +233,7 @@ class Search:
         objective: SearchObjective,
     ) -> tuple[list[tuple[int, int]], Array]:
         """Pairs that tell, and (A, P, C) values; NaN where one failed or was not measured."""
-        self._rows(space, candidates, pairs)
+        self._measure(space, candidates, pairs)
         pairs = self._telling(pairs, objective)
         rows = self._rows(space, candidates, pairs)
         values = np.full((len(rows), len(objective.criteria)), np.nan)
