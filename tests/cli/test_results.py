@@ -171,6 +171,8 @@ def test_pairs_are_counted_by_their_images(call: Call, photos: Path, tmp_path: P
         answer = call("run", photos, *words, "--pairs", file)
         assert answer.code == 0, answer.err
     assert "1 combination on 2 pairs" in call("results", tmp_path / "results").out
+    scored = call("score", tmp_path / "results")
+    assert scored.code == 0, scored.err
 
 
 def test_a_query_is_typeset(call: Call, finished: Path, tmp_path: Path) -> None:

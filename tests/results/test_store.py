@@ -128,6 +128,21 @@ def test_a_folder_is_filled_part_by_part(store: Store) -> None:
     assert len(store.planned()) == 11
 
 
+def test_another_pair_with_a_number_that_is_taken_gets_a_free_one(tmp_path: Path) -> None:
+    store = Store.create(tmp_path / "results")
+    store.write_run({"settings_key": "now"})
+    first = [row(0), row(0, descriptor="BRISK"), row(1)]
+    store.write_plan(planned(first))
+    store.write_rows("first", first)
+    second = [row(0, image_1="c", row_key="c"), row(2, image_1="e", row_key="e")]
+    store.write_plan(planned(second))
+    store.write_rows("second", second)
+    assert sorted(store.table().select("pair", "image_1", "descriptor").rows()) == [
+        *((0, "c", "ORB"), (1, "a1", "ORB"), (2, "e", "ORB")),
+        *((3, "a0", "BRISK"), (3, "a0", "ORB")),
+    ]
+
+
 def test_a_pair_that_got_another_number_is_not_counted_twice(tmp_path: Path) -> None:
     store = Store.create(tmp_path / "results")
     store.write_run({"settings_key": "now"})

@@ -19,6 +19,7 @@ from aerocues.pipeline.representative import (
 )
 from aerocues.pipeline.survey import Survey, Surveyor
 from aerocues.pipeline.survey_folder import read_survey, survey_key, write_survey
+from aerocues.results.hashing import content_hash
 
 FEWEST_IMAGES = 3
 """Two images are one pair: there is nothing to choose."""
@@ -136,7 +137,9 @@ def survey_flight(
         for number, pair in enumerate(chosen.pairs)
     ]
     others = tuple(each for each in dataset.settings if each[0] != "pairs")
-    settings = (*others, ("pairs", f"representative:{len(pairs)}"))
+    # Rows of other pairs, drawn from another survey, do not stand beside these in one folder.
+    which = content_hash([(pair.image_1, pair.image_2) for pair in pairs])
+    settings = (*others, ("pairs", f"representative:{len(pairs)}:{which}"))
     return SurveyedFlight(replace(dataset, pairs=pairs, settings=settings), survey, chosen)
 
 

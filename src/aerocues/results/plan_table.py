@@ -38,7 +38,8 @@ def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 
     Rows of the same dataset are kept if it is read in the same way under the same settings, so that
     a folder can be filled sequence by sequence or method by method. Otherwise the new rows replace
-    them.
+    them. A pair has the number that it has in the new plan; other pairs with such a number get a
+    free one.
     """
     import polars as pl
 
@@ -57,4 +58,22 @@ def merge_plans(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         .with_columns(pl.coalesce(f"{name}_new", name).alias(name) for name in ("pair", "sequence"))
         .select(new.columns)
     )
-    return pl.concat([others.select(new.columns), renumbered, new])
+    return pl.concat([others.select(new.columns), _with_free_numbers(renumbered, new), new])
+
+
+def _with_free_numbers(kept: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """The kept rows; pairs that the new plan does not have do not share a number with its pairs."""
+    import polars as pl
+
+    others = kept.join(new, on=PAIR, how="anti").select(*PAIR, "pair").unique(PAIR)
+    clashing = others.filter(pl.col("pair").is_in(new["pair"].implode())).sort("pair", *PAIR)
+    if clashing.is_empty():
+        return kept
+    first = max(*kept["pair"], *new["pair"]) + 1
+    free = pl.Series(range(first, first + len(clashing)), dtype=new.schema["pair"])
+    numbers = clashing.with_columns(free.alias("free")).drop("pair")
+    return (
+        kept.join(numbers, on=PAIR, how="left", maintain_order="left")
+        .with_columns(pl.coalesce("free", "pair").alias("pair"))
+        .select(kept.columns)
+    )
