@@ -38,6 +38,14 @@ KINDS = {"HAM": "strings of bits", "L2": "numbers"}
 """Descriptors by the norm under which they are compared."""
 
 
+def _mixed(table: pl.DataFrame) -> str:
+    """How many parts have times of several kinds of machine."""
+    kinds = table.group_by("part").agg(pl.col("machine").n_unique())
+    number = kinds.filter(pl.col("machine") > 1).height
+    told = "with times of several kinds of machine, which do not compare"
+    return f" {count(number, 'part')} {told}." if number else ""
+
+
 @dataclass(frozen=True)
 class Finding:
     """What a part says about a condition: the choice, and the test that `score` makes."""
@@ -125,7 +133,8 @@ class Answers(Parts):
             f"{parts['cpu_hours'].sum():.2f} CPU hours for {parts['covered'].sum():,} of these "
             "(of the others none are known). "
             f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
-            f"{parts['identical'].sum():,} with identical quality.{self._outdated(table)}"
+            f"{parts['identical'].sum():,} with identical quality."
+            f"{self._outdated(table)}{_mixed(table)}"
         )
 
     def _outdated(self, table: pl.DataFrame) -> str:

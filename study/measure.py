@@ -49,6 +49,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--dry-run", action="store_true", help="print the hours of each step")
     made.add_argument("--verify", action="store_true", help="measure 5 %% of the rows again")
     made.add_argument("--seed", type=int, default=1, help="draws these rows; the same for the same")
+    made.add_argument(
+        "--one-machine", action="store_true", help="measure rows of other kinds of machine again"
+    )
     made.add_argument("--workers", type=int, metavar="N")
     made.add_argument("--engine", choices=("local", "dask"), default="local")
     made.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://host:8786")
@@ -85,6 +88,7 @@ def _done(asked: argparse.Namespace, engine: Any) -> int:
         budget=None if asked.budget is None else seconds_of("budget", asked.budget),
         engine=engine,
         workers=asked.workers,
+        one_machine=asked.one_machine,
     )
     if asked.dry_run:
         print_hours(study.plan.of(asked.only), study.measured())

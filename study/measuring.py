@@ -17,6 +17,7 @@ from aerocues.progress import Event
 from aerocues.results.store import RUN
 from aerocues.results.study import FACTS, add_part
 from study.flights import make_flight
+from study.machines import remove_rows_of_others, rows_of_others
 from study.outdated import drop_outdated
 from study.plan import MODELS, Plan, Step, images_of
 
@@ -46,6 +47,8 @@ class Study:
     workers : int, optional
     tell : callable
         Called with lines about the progress.
+    one_machine : bool
+        Measure rows of other kinds of machine again, so that the times of a part compare.
     """
 
     plan: Plan
@@ -56,10 +59,11 @@ class Study:
     engine: Any = None
     workers: int | None = None
     tell: Callable[[str], None] = print
+    one_machine: bool = False
     _began: float = field(default_factory=time.monotonic)
     _told: float = 0.0
     _kept: dict[str, float] = field(default_factory=dict)
-    """Share of the rows of a part that stayed, where outdated ones were left out."""
+    """Share of the rows of a part that stayed, where some were left out."""
 
     def facts(self, part: str) -> dict[str, Any]:
         """What the database tells of a part besides its rows."""
@@ -89,7 +93,7 @@ class Study:
                 self.tell(f"{step.name}: skipped, as {', '.join(missing)} is not installed")
                 skipped += 1
                 continue
-            if self.steps(step.part.name).get(step.short_name, {}).get("finished") == step.asked():
+            if self._finished(step):
                 continue
             try:
                 self.make(step)
@@ -102,6 +106,13 @@ class Study:
         if skipped:
             self.tell(f"not finished: {count(skipped, 'step')} skipped")
         return not skipped
+
+    def _finished(self, step: Step) -> bool:
+        """Whether the database has all of a step as it is asked for."""
+        part = step.part.name
+        if self.steps(part).get(step.short_name, {}).get("finished") != step.asked():
+            return False
+        return not (self.one_machine and step.round and rows_of_others(self.database / part))
 
     def make(self, step: Step) -> None:
         """Make one step, or what is left of it, and store the part, finished or not."""
@@ -149,18 +160,20 @@ class Study:
     def _of_kept_rows(
         self, part: str, steps: Mapping[str, Mapping[str, Any]]
     ) -> dict[str, dict[str, Any]]:
-        """What is told of the steps of a part, where outdated rows were left out of it."""
+        """What is told of the steps of a part, where rows were left out of it."""
         share = self._kept.pop(part, 1.0)
         if share == 1.0:
             return {name: dict(told) for name, told in steps.items()}
-        return {
+        rounds = {
             name: {
-                "seconds": told["seconds"] * (1.0 if name == MODELS else share),
-                "rows": told["rows"] if name == MODELS else round(told["rows"] * share),
+                "seconds": told["seconds"] * share,
+                "rows": round(told["rows"] * share),
                 "finished": None,
             }
             for name, told in steps.items()
+            if name != MODELS
         }
+        return {name: rounds.get(name, dict(told)) for name, told in steps.items()}
 
     def _same_rows(self, part: str) -> bool:
         """Whether the database has the rows of the results folder."""
@@ -171,14 +184,22 @@ class Study:
         return new.equals(kept)
 
     def _restore(self, step: Step) -> None:
-        """Go on from the database where the results folder is gone, without outdated rows."""
+        """Go on from the database where the results folder is gone, without rows to replace."""
         kept, folder = self.database / step.part.name, self.work / step.part.name
         if (kept / RUN).is_file() and not (folder / RUN).is_file():
             shutil.copytree(kept, folder, dirs_exist_ok=True)
-        if (folder / RUN).is_file() and (number := drop_outdated(folder, step.part)):
+        if not (folder / RUN).is_file():
+            return
+        number = drop_outdated(folder, step.part)
+        reasons = {"other parameters": number}
+        if self.one_machine:
+            reasons["other machines"] = remove_rows_of_others(folder)
+        if number := sum(reasons.values()):
             left = len(aerocues.Results(folder).table())
             self._kept[step.part.name] = left / (left + number)
-            self.tell(f"{step.part.name}: {count(number, 'row')} of other parameters left out")
+        for reason, number in reasons.items():
+            if number:
+                self.tell(f"{step.part.name}: {count(number, 'row')} of {reason} left out")
 
     def dataset(self, step: Step) -> aerocues.Dataset:
         """The images of a step, with the pairs to measure."""

@@ -166,6 +166,31 @@ def test_rows_of_other_parameters_are_measured_again(measured: Path, tmp_path: P
     assert sum(step["rows"] for step in steps.values()) == len(rows) == 6
 
 
+def test_rows_of_other_machines_are_measured_again_where_asked_for(
+    measured: Path, tmp_path: Path
+) -> None:
+    for place in ("data", "database"):
+        shutil.copytree(measured / place, tmp_path / place)
+    (tmp_path / "tiny.toml").write_text(TINY)
+    (file,) = (tmp_path / "database" / "views" / "parts").glob("*.parquet")
+    rows = pl.read_parquet(file)
+    there = pl.when(detector="GFTT").then(pl.lit("another")).otherwise("machine")
+    rows.with_columns(there.alias("machine")).write_parquet(file)
+    words = [*arguments(tmp_path), "--only", "views"]
+    assert main(words) == 0
+    study = aerocues.Study(tmp_path / "database")
+    assert study.table()["machine"].value_counts().height == 2
+    assert main([*words, "--one-machine"]) == 0
+    again = study.table()
+    assert again["machine"].unique().to_list() == rows["machine"].unique().to_list()
+    kept = again.join(rows, on=("row_key", "measured_at"))
+    assert (len(again), len(kept)) == (9, 6)
+    assert kept["detector"].unique().to_list() == ["ORB"]
+    steps = aerocues.Results(tmp_path / "database" / "views").settings["study"]["steps"]
+    assert all(step["finished"] for step in steps.values())
+    assert not main([*words, "--one-machine"])
+
+
 def test_what_is_asked_for_must_exist(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*arguments(measured), "--dry-run", "--only", "elsewhere"]) == 0
     assert "needs no_such_module" in capsys.readouterr().out
