@@ -2,18 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import polars as pl
 
 import aerocues
 from aerocues.errors import ScoreError
+from aerocues.results.model_quality import MODEL_QUALITY
 from aerocues.results.study_dictionary import dictionary
+from aerocues.scoring.pair_figures import LINK_COVERAGE
 from docs.study_parts import MOST_NAMED, NOT_YET, Parts
 from docs.study_pixels import widths_compared
 from docs.study_queries import described, in_common, markdown, rank_correlation
+
+PREDICTED = {MODEL_QUALITY: "quality", "registered_images": "images", "points_3d": "points"}
+"""Figures of models, and what the page calls them."""
+COMPARED = {
+    LINK_COVERAGE: "links x coverage, by which the objective `reconstruction` chooses,",
+    "success_rate": "successful pairs",
+    "ref_matches@3": "right matches",
+    "inliers": "inliers",
+}
+"""Figures of pairs whose correlation with the quality of models is told for each part."""
+ENOUGH_MODELS = 8
+"""Of fewer models, many figures have a high correlation by chance."""
+
+
+def _best_of(values: Mapping[tuple[str, str], float], outcome: str) -> str:
+    """The figures of pairs that correlate most with a figure of models."""
+    own = {feature: value for (feature, which), value in values.items() if which == outcome}
+    order = sorted(own, key=lambda name: -abs(own[name]))[:MOST_NAMED]
+    return ", ".join(f"`{name}` {own[name]:.2f}" for name in order)
 
 
 @dataclass(frozen=True)
@@ -54,23 +74,37 @@ class Tables(Parts):
         return markdown(lines) if lines[1:] else "No row failed."
 
     def predictors(self) -> str:
-        """Which figures of pairs predict how many images a model holds."""
-        lines = [("part", "models", "figures of pairs that predict registered images best")]
+        """Which figures of pairs predict what models are like."""
+        lines = [("part", "models", *(f"predicts {told} best" for told in PREDICTED.values()))]
+        quality: dict[str, list[str]] = {name: [] for name in COMPARED}
+        for name, related in self._related().items():
+            values = {
+                (row["feature"], row["outcome"]): row["spearman"]
+                for row in related.frame().drop_nulls().iter_rows(named=True)
+            }
+            best = [_best_of(values, outcome) for outcome in PREDICTED]
+            lines.append((f"`{name}`", str(len(related.combinations)), *best))
+            for figure, known in quality.items():
+                value = values.get((figure, MODEL_QUALITY))
+                known.append("?" if value is None else f"{value:.2f}")
+        told = "; ".join(f"{COMPARED[name]} {', '.join(known)}" for name, known in quality.items())
+        summary = f"Correlations with the quality of the models of these parts: {told}.\n\n"
+        return summary + markdown(lines) if lines[1:] else NOT_YET
+
+    def _related(self) -> dict[str, aerocues.Relations]:
+        """The relations of the parts that have enough models."""
+        found = {}
         for name in self.names:
-            [found] = self.results([name])
-            if found.reconstructions().is_empty():
+            [results] = self.results([name])
+            if results.reconstructions().is_empty():
                 continue
             try:
-                related = aerocues.relate_outcomes(found)
+                related = aerocues.relate_outcomes(results)
             except ScoreError:  # too few models, or nothing varies
                 continue
-            if "registered_images" not in related.outcomes:
-                continue
-            own = related.spearman[:, related.outcomes.index("registered_images")]
-            order = [place for place in np.argsort(-np.abs(own)) if np.isfinite(own[place])]
-            told = ", ".join(f"`{related.features[p]}` {own[p]:.2f}" for p in order[:MOST_NAMED])
-            lines.append((f"`{name}`", str(len(related.combinations)), told))
-        return markdown(lines) if lines[1:] else NOT_YET
+            if len(related.combinations) >= ENOUGH_MODELS:
+                found[name] = related
+        return found
 
     def presets(self) -> str:
         """What `tuned` gains over the parameters of the thesis."""

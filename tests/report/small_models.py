@@ -26,7 +26,7 @@ def small_models(methods: tuple[tuple[str, ...], ...], harmful: str) -> dict[str
         listed = np.asarray(values).tolist()
         return [None if gone else value for gone, value in zip(lost, listed, strict=True)]
 
-    columns = {
+    columns: dict[str, tuple[str, str | None, list[Any]]] = {
         "images": ("count", None, [12] * count),
         "registered_images": ("count", "higher", known(np.maximum(12 - np.arange(count), 2))),
         "points_3d": ("count", "higher", known(5000 - 300 * np.arange(count))),
@@ -60,7 +60,14 @@ def small_models(methods: tuple[tuple[str, ...], ...], harmful: str) -> dict[str
             "combinations": ["-".join(method) for method in methods],
             "features": list(FEATURES),
             "outcomes": list(OUTCOMES),
-            "values": {name: generator.uniform(0.1, 1, count).tolist() for name in FEATURES},
+            "values": {
+                **{name: generator.uniform(0.1, 1, count).tolist() for name in FEATURES},
+                "registered_images": [value or 0 for value in columns["registered_images"][2]],
+                "points_3d": [
+                    value if each == "ok" else None
+                    for value, each in zip(columns["points_3d"][2], status, strict=True)
+                ],
+            },
             "pearson": matrix,
             "spearman": matrix,
             "numbers": [[count, count - 2], [count, count - 2]],

@@ -115,6 +115,37 @@ def test_failed_pairs_count_for_the_success_rate_only() -> None:
     np.testing.assert_array_equal(rate, [1, 1, *6 * [0.5]])
 
 
+def test_links_times_coverage_by_hand() -> None:
+    def seen(name: str, pair: int, right: int, coverage: float, **more: Any) -> dict[str, Any]:
+        turn = 180.0 if pair == 2 else 0.0
+        told = {"reference": "flow", "reference_turn": turn, "ref_matches@3": right}
+        return row(name, pair, coverage=coverage, **told, **more)
+
+    measured = rows(
+        *(seen(name, 0, 120, 0.1 + n / 100) for n, name in enumerate(NAMES)),
+        *(seen(name, 1, 30, 0.2) for name in NAMES),
+        *(seen(name, 2, 60, 0.3) for name in NAMES[:5]),
+        *(seen(name, 2, 15, 0.3, status="chance") for name in NAMES[5:]),
+    )
+    quality = tuple(float(n) for n in (9, 8, 7, 6, 5, 3, 2, 1))
+    figures = [{"registered_images": 18} for _ in quality]
+    made = reconstructed(*figures).with_columns(pl.Series("model_quality", quality))
+    found = relate_outcomes(Stored(measured, made))
+    at = (found.features.index("links_x_coverage"), found.outcomes.index("model_quality"))
+    # Same heading: (1 + 1/2) / 2; turned: 1, or 0 where the pair failed, which covers nothing.
+    same, none = (0.05 + 0.75) / 1.05, 0.05 / 1.05
+    expected = [
+        same * (1.0 if n < 5 else none) * (0.1 + n / 100 + 0.2 + (0.3 if n < 5 else 0.0)) / 3
+        for n in range(8)
+    ]
+    np.testing.assert_allclose(found.feature_values[:, at[0]], expected)
+    assert found.spearman[at] == pytest.approx(spearmanr(expected, quality).statistic)
+
+
+def test_without_a_reference_there_are_no_links() -> None:
+    assert "links_x_coverage" not in relate_outcomes(Stored(MEASURED, MODELS)).features
+
+
 def test_the_table_has_a_row_for_each_pair_of_figures() -> None:
     found = relate_outcomes(Stored(MEASURED, MODELS))
     frame = found.frame()

@@ -113,7 +113,10 @@ def _related(found: Relations) -> dict[str, Any]:
         "combinations": found.combinations,
         "features": found.features,
         "outcomes": found.outcomes,
-        "values": dict(zip(found.features, found.feature_values.T, strict=True)),
+        "values": {
+            **dict(zip(found.features, found.feature_values.T, strict=True)),
+            **dict(zip(found.outcomes, found.outcome_values.T, strict=True)),
+        },
         "pearson": found.pearson,
         "spearman": found.spearman,
         "numbers": found.numbers,

@@ -13,43 +13,18 @@ from numpy.typing import NDArray
 from aerocues.errors import ScoreError
 from aerocues.notebooks import as_html
 from aerocues.results.combination_columns import COMBINATION, combination_name
-from aerocues.scoring.combinations import (
-    SUCCESS,
-    SUCCESS_WITHOUT_CHANCE_TEST,
-    suitable_preset,
-)
+from aerocues.results.model_quality import MODEL_QUALITY
+from aerocues.scoring.combinations import SUCCESS, suitable_preset
 from aerocues.scoring.correlation import correlation_between
-from aerocues.scoring.criteria import Better, criteria_named
-from aerocues.scoring.long_form import values_of
+from aerocues.scoring.criteria import Better
 from aerocues.scoring.measured import Measured, opened, rows_of_dataset
+from aerocues.scoring.pair_figures import figures_of_pairs
 from aerocues.scoring.settings import score_preset_named
 
 if TYPE_CHECKING:
     import polars as pl
 
 Array = NDArray[np.float64]
-SUCCESS_RATE = "success_rate"
-# Criteria of pairs whose means are correlated, if measured. Of several ground-truth thresholds only
-# the middle one: the others are almost redundant.
-FEATURES = (
-    "inliers",
-    "matches",
-    "precision",
-    "recall",
-    "repeatability",
-    "f1_score",
-    "excess_inliers",
-    "precision_beyond_chance",
-    "recall_beyond_chance",
-    "repeatability_beyond_chance",
-    "f1_beyond_chance",
-    "total_seconds",
-    "gt_precision@3",
-    "gt_matching_score@3",
-    "gt_repeatability",
-    "homography_auc@3",
-    "pose_auc@10",
-)
 # With three models, a random figure has a rank correlation of exactly 1 or -1 in one of three
 # cases, with four in one of twelve: among dozens of coefficients, some would be 1 by chance.
 FEWEST_MODELS = 5
@@ -79,6 +54,7 @@ class Outcome:
 
 
 OUTCOMES: tuple[Outcome, ...] = (
+    Outcome(MODEL_QUALITY, of_model=False),
     Outcome("registered_images", of_model=False),
     Outcome("points_3d"),
     Outcome("observations"),
@@ -105,7 +81,8 @@ class Relations:
     features, outcomes : tuple of str
         Figures that vary.
     feature_values : (combinations, features) float64
-        Means over the successful pairs, and the share of these pairs; NaN if unknown.
+        Means over the successful pairs, the share of these pairs, and, where pairs have a
+        reference, links by class of pairs x coverage (`Links.factor`); NaN if unknown.
     outcome_values : (combinations, outcomes) float64
         NaN if unknown, or if it describes a model that did not succeed.
     pearson, spearman : (features, outcomes) float64
@@ -191,7 +168,7 @@ def relate_outcomes(
 def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool) -> Relations:
     """The same for rows and reconstructions of one dataset; see `relate_outcomes`."""
     name = combination_name()
-    features = _features(rows.with_columns(name), chance_fails=chance_fails)
+    features = figures_of_pairs(rows.with_columns(name), chance_fails=chance_fails)
     joined = features.join(_outcomes(models.with_columns(name)), on=COMBINATION).sort(COMBINATION)
     if len(joined) < FEWEST_MODELS:
         raise ScoreError(
@@ -200,30 +177,6 @@ def relations_of(rows: pl.DataFrame, models: pl.DataFrame, *, chance_fails: bool
             "`aerocues.reconstruct`"
         )
     return _related(rows["dataset"][0], joined, features.columns[1:])
-
-
-def _features(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
-    """Means of each combination over its successful pairs, and the share of these pairs."""
-    import polars as pl
-
-    success = pl.col("status").is_in(SUCCESS if chance_fails else SUCCESS_WITHOUT_CHANCE_TEST)
-    known: list[pl.Series] = []
-    for criterion in criteria_named(FEATURES):
-        try:
-            values = values_of(rows, criterion).cast(pl.Float64)
-        except ScoreError:
-            continue  # not measured
-        known.append(values.alias(criterion.name))
-    names = [values.name for values in known]
-    return (
-        rows.select(COMBINATION, success.alias(SUCCESS_RATE))
-        .with_columns(known)
-        .group_by(COMBINATION)
-        .agg(
-            pl.col(SUCCESS_RATE).cast(pl.Float64).mean(),
-            pl.col(names).filter(pl.col(SUCCESS_RATE) & pl.col(names).is_finite()).mean(),
-        )
-    )
 
 
 def _outcomes(models: pl.DataFrame) -> pl.DataFrame:

@@ -249,6 +249,7 @@ interface Relations {
   combinations: string[];
   features: string[];
   outcomes: string[];
+  /** Of the combinations, by feature and by outcome. */
   values: Record<string, Value[]>;
   pearson: Matrix;
   spearman: Matrix;

@@ -66,8 +66,8 @@ const MEASURE_OF_RELATION = {name: "measure", label: "Correlation", fallback: ()
 /** @type {FigureSpec} */
 export const OUTCOME_MATRIX = {
   id: "outcomes", title: "Do good matches make good models?",
-  read: "Correlation over the combinations between measurements of image pairs (rows) and properties of the models (columns). Registered images "
-    + "are correlated over all models, the other properties over successful ones: broken models have few points and a low error.",
+  read: "Correlation over the combinations between measurements of image pairs (rows) and properties of the models (columns). Quality and "
+    + "registered images are correlated over all models, the other properties over successful ones: broken models have few points and a low error.",
   controls: [MEASURE_OF_RELATION], ignoresFilter: true, wide: true,
   available: hasRelations,
   draw({entry, option, theme, narrow}) {
@@ -88,9 +88,9 @@ export const OUTCOME_SCATTER = {
   read: "One dot per combination. Choose a measurement of pairs and a property of the models.",
   controls: [
     {name: "x", label: "Horizontal", options: entry => relationOptions(entry, "features"),
-      fallback: entry => preferredOption(relationOptions(entry, "features"), ["recall_beyond_chance", "recall", "inliers"])},
+      fallback: entry => preferredOption(relationOptions(entry, "features"), ["links_x_coverage", "recall_beyond_chance", "recall", "inliers"])},
     {name: "y", label: "Vertical", options: entry => relationOptions(entry, "outcomes"),
-      fallback: entry => preferredOption(relationOptions(entry, "outcomes"), ["points_3d"])},
+      fallback: entry => preferredOption(relationOptions(entry, "outcomes"), ["model_quality", "points_3d"])},
     colourControl("detector"),
   ],
   available: hasRelations,
@@ -124,7 +124,7 @@ function outcomePoints({entry, option, theme, narrow}) {
   const passes = currentFilter();
   const found = combinations.flatMap((name, i) => {
     const m = models.combinations.indexOf(name);
-    const [x, y] = [values[xName][i], outcomeOf(models, yName, m)];
+    const [x, y] = [values[xName][i], values[yName][i]];
     return passes(name.split("-")) && isKnown(x) && isKnown(y) ? [{name, m, x, y}] : [];
   });
   if (!found.length) return {empty: "None of these combinations has both values."};
@@ -143,17 +143,4 @@ function outcomePoints({entry, option, theme, narrow}) {
     note: found.length < fewest ? `${counted(found.length, "combination")}: too few for a correlation.`
       : `Spearman’s correlation over ${counted(found.length, "combination")}: ${fixed(spearman(found.map(each => each.x), found.map(each => each.y)), 2)}.`,
   };
-}
-
-const WITHOUT_MODEL = ["no_features", "no_verified_pair", "no_initial_pair", "no_model"];
-
-/** The value that counts for a relation, as in `scoring/outcomes.py`: no model counts as 0 images, a crash is unknown;
- * other properties are those of successful models; the reference has no distance to itself.
- * @param {Models} models @param {string} name @param {number} m */
-function outcomeOf(models, name, m) {
-  const value = models.values[name]?.[m] ?? null;
-  const status = models.status[m];
-  if (name === "registered_images") return value ?? (WITHOUT_MODEL.includes(status) ? 0 : null);
-  if (status !== "ok" || (name.includes("_distance_") && models.combinations[m] === models.reference)) return null;
-  return value;
 }
