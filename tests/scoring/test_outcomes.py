@@ -140,6 +140,9 @@ def test_links_times_coverage_by_hand() -> None:
     ]
     np.testing.assert_allclose(found.feature_values[:, at[0]], expected)
     assert found.spearman[at] == pytest.approx(spearmanr(expected, quality).statistic)
+    # A table from elsewhere need not have all that links need.
+    some = relate_outcomes(Stored(measured.drop("reference_turn"), made))
+    assert set(found.features) - set(some.features) == {"links_x_coverage"}
 
 
 def test_without_a_reference_there_are_no_links() -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 SUCCESS_RATE = "success_rate"
 LINK_COVERAGE = "links_x_coverage"
+OF_LINKS = ("coverage", "ref_matches@3", "reference_turn")
 # Of several thresholds of the ground truth only the middle one: the others are almost redundant.
 CRITERIA = (
     "inliers",
@@ -87,7 +88,7 @@ def figures_of_pairs(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
             pl.col(names).filter(pl.col(SUCCESS_RATE) & pl.col(names).is_finite()).mean(),
         )
     )
-    if not has_reference(rows):
+    if not (has_reference(rows) and set(OF_LINKS) <= set(rows.columns)):
         return means
     return means.join(_link_coverage(rows, chance_fails=chance_fails), on=COMBINATION, how="left")
 
