@@ -14,7 +14,7 @@ from aerocues.scoring.combinations import (
     decision_table,
     has_reference,
 )
-from aerocues.scoring.criteria import criteria_named
+from aerocues.scoring.criteria import RIGHT_MATCHES, criteria_named
 from aerocues.scoring.long_form import values_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 SUCCESS_RATE = "success_rate"
 LINK_COVERAGE = "links_x_coverage"
-OF_LINKS = ("coverage", "ref_matches@3", "reference_turn")
+OF_LINKS = ("coverage", RIGHT_MATCHES, "reference_turn")
 # Of several thresholds of the ground truth only the middle one: the others are almost redundant.
 CRITERIA = (
     "inliers",
