@@ -115,6 +115,8 @@ class Step:
         terms = asdict(self.part) | {"round": asdict(self.round) if self.round else None}
         if self.part.preset.name not in FIXED:
             terms["parameters"] = self._parameters()
+        if self.round:
+            terms["models"] = {}  # other models do not concern its rows
         told = ("title", "licence", "pairs", "rounds", "factor")
         return content_hash({name: value for name, value in terms.items() if name not in told})
 
