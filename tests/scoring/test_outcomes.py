@@ -12,6 +12,7 @@ from scipy.stats import pearsonr, spearmanr
 import aerocues
 from aerocues.errors import ScoreError
 from aerocues.scoring.outcomes import OUTCOMES, relate_outcomes
+from aerocues.scoring.pair_figures import LINK_MATCHES
 from tests.scoring.measurements import METHODS, Stored, models, row, rows
 
 NAMES = tuple(f"D{number}-E-L2-BF" for number in range(8))
@@ -127,22 +128,26 @@ def test_links_times_coverage_by_hand() -> None:
         *(seen(name, 2, 60, 0.3) for name in NAMES[:5]),
         *(seen(name, 2, 15, 0.3, status="chance") for name in NAMES[5:]),
     )
+    # Same heading: (1 + 1/2) / 2; turned: 1, or 0 where the pair failed, which covers nothing.
+    same, none = (0.05 + 0.75) / 1.05, 0.05 / 1.05
+    matches = [
+        same * (1.0 if n < 5 else none) * (120 + 30 + (60 if n < 5 else 0)) / 3 for n in range(8)
+    ]
     quality = tuple(float(n) for n in (9, 8, 7, 6, 5, 3, 2, 1))
     figures = [{"registered_images": 18} for _ in quality]
     made = reconstructed(*figures).with_columns(pl.Series("model_quality", quality))
     found = relate_outcomes(Stored(measured, made))
     at = (found.features.index("links_x_coverage"), found.outcomes.index("model_quality"))
-    # Same heading: (1 + 1/2) / 2; turned: 1, or 0 where the pair failed, which covers nothing.
-    same, none = (0.05 + 0.75) / 1.05, 0.05 / 1.05
     expected = [
         same * (1.0 if n < 5 else none) * (0.1 + n / 100 + 0.2 + (0.3 if n < 5 else 0.0)) / 3
         for n in range(8)
     ]
     np.testing.assert_allclose(found.feature_values[:, at[0]], expected)
+    np.testing.assert_allclose(found.feature_values[:, found.features.index(LINK_MATCHES)], matches)
     assert found.spearman[at] == pytest.approx(spearmanr(expected, quality).statistic)
     # A table from elsewhere need not have all that links need.
     some = relate_outcomes(Stored(measured.drop("reference_turn"), made))
-    assert set(found.features) - set(some.features) == {"links_x_coverage"}
+    assert set(found.features) - set(some.features) == {"links_x_coverage", LINK_MATCHES}
 
 
 def test_without_a_reference_there_are_no_links() -> None:

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 SUCCESS_RATE = "success_rate"
 LINK_COVERAGE = "links_x_coverage"
-OF_LINKS = ("coverage", RIGHT_MATCHES, "reference_turn")
+LINK_MATCHES = "links_x_right_matches"
+LINKED = {"coverage": LINK_COVERAGE, RIGHT_MATCHES: LINK_MATCHES}
+"""Means that are multiplied by the links, and what the products are called."""
 # Of several thresholds of the ground truth only the middle one: the others are almost redundant.
 CRITERIA = (
     "inliers",
@@ -66,7 +68,8 @@ def figures_of_pairs(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
     -------
     pl.DataFrame
         One row per combination: the share of its successful pairs, means over these of what was
-        measured, and, where pairs have a reference, links by class of pairs times coverage.
+        measured, and, where pairs have a reference, links by class of pairs times coverage and
+        times right matches.
     """
     import polars as pl
 
@@ -88,20 +91,20 @@ def figures_of_pairs(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
             pl.col(names).filter(pl.col(SUCCESS_RATE) & pl.col(names).is_finite()).mean(),
         )
     )
-    if not (has_reference(rows) and set(OF_LINKS) <= set(rows.columns)):
+    if not (has_reference(rows) and {*LINKED, "reference_turn"} <= set(rows.columns)):
         return means
-    return means.join(_link_coverage(rows, chance_fails=chance_fails), on=COMBINATION, how="left")
+    return means.join(_linked(rows, chance_fails=chance_fails), on=COMBINATION, how="left")
 
 
-def _link_coverage(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
-    """What the objective `reconstruction` chooses by: failed pairs link and cover nothing."""
+def _linked(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
+    """Links by class of pairs times means: failed pairs link nothing and have no right match."""
     import polars as pl
 
-    criteria = criteria_named(("coverage",))
+    criteria = criteria_named(tuple(LINKED))
     table = decision_table(rows, criteria, chance_fails=chance_fails, links=True)
     assert table.links is not None
-    measured = table.tried_on
-    covered = np.where(np.isnan(table.values[:, :, 0]), 0.0, table.values[:, :, 0])
-    coverage = np.where(measured, covered, 0.0).sum(axis=1) / np.maximum(measured.sum(axis=1), 1)
+    pairs = np.maximum(table.tried, 1)
+    means = np.nan_to_num(table.values).sum(axis=1) / pairs[:, None]
     links = table.links.factor(np.ones((1, len(table.repeats))))[0]
-    return pl.DataFrame({COMBINATION: table.alternatives, LINK_COVERAGE: links * coverage})
+    figures = dict(zip(LINKED.values(), (links[:, None] * means).T, strict=True))
+    return pl.DataFrame({COMBINATION: table.alternatives, **figures})
