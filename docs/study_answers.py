@@ -85,9 +85,8 @@ class Finding:
             )
         else:
             told = (
-                f"right matches cover {score} of the image {interval}, counting how surely pairs "
-                f"are linked, over {pairs}; the probability that it is the best is "
-                f"{self.probability}"
+                f"{score} {interval}, where 1 is the best pair of all and every pair is surely "
+                f"linked, over {pairs}; the probability that it is the best is {self.probability}"
             )
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
         if 2 * worse >= others:

@@ -11,7 +11,7 @@ import aerocues
 from aerocues.errors import ScoreError
 from aerocues.results.model_quality import MODEL_QUALITY
 from aerocues.results.study_dictionary import dictionary
-from aerocues.scoring.pair_figures import LINK_COVERAGE, LINK_MATCHES
+from aerocues.scoring.pair_figures import LINK_COVERAGE, LINK_QUALITY
 from docs.study_parts import MOST_NAMED, NOT_YET, Parts
 from docs.study_pixels import widths_compared
 from docs.study_queries import described, in_common, markdown, rank_correlation
@@ -19,8 +19,8 @@ from docs.study_queries import described, in_common, markdown, rank_correlation
 PREDICTED = {MODEL_QUALITY: "quality", "registered_images": "images", "points_3d": "points"}
 """Figures of models, and what the page calls them."""
 COMPARED = {
-    LINK_COVERAGE: "links x coverage, by which the objective `reconstruction` chooses,",
-    LINK_MATCHES: "links x right matches",
+    LINK_QUALITY: "links x expected quality, by which the objective `reconstruction` chooses,",
+    LINK_COVERAGE: "links x coverage",
     "success_rate": "successful pairs",
     "ref_matches@3": "right matches",
     "inliers": "inliers",

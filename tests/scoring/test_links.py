@@ -65,10 +65,10 @@ def test_links_fit_the_table() -> None:
         replace(random_table(1), links=Links(np.ones((8, 5)), np.zeros(5, np.int64)))
 
 
-def test_shares_keep_their_size_under_bounds_of_one() -> None:
+def test_ratios_stay_under_bounds_from_zero() -> None:
     table = table_of([[[0.2], [0.4]], [[0.5], [0.7]], [[0.1], [NAN]]])
-    found = score(table, ScoreSettings(alpha=1.0, bounds="unit"))
-    np.testing.assert_allclose(found.scores, [0.3, 0.6, 0.05])
+    found = score(table, ScoreSettings(alpha=1.0, bounds="zero"))
+    np.testing.assert_allclose(found.scores, [0.3 / 0.7, 0.6 / 0.7, 0.05 / 0.7])
 
 
 def measured(combination: str, pair: int, right: int, **values: object) -> dict[str, object]:
@@ -110,10 +110,11 @@ def test_what_links_no_turned_pair_does_not_win() -> None:
         scores = score(found.table, found.preset.settings)
         assert scores.table.alternatives[scores.best] == TURNING
     models = measured_table(Stored(flight()), "models").table
-    scores = score(models, ScoreSettings(alpha=1.0, bounds="unit"))
-    # By hand: classes turned and other; coverage .35 and (.95 + 0) / 2.
-    np.testing.assert_allclose(scores.scores, [0.05 / 1.05 * 0.475, 0.35], rtol=1e-12)
-    upright = measured_table(Stored(flight()), criteria=["coverage"]).table
+    scores = score(models, ScoreSettings(alpha=1.0, bounds="zero"))
+    # By hand: classes turned and other; of 190 right matches, the most, the quality is 1.
+    expected = [0.05 / 1.05 * (1 + 0) / 2, np.sqrt(70 / 190)]
+    np.testing.assert_allclose(scores.scores, expected, rtol=1e-12)
+    upright = measured_table(Stored(flight()), criteria=["expected_quality"]).table
     assert upright.links is None
 
 
@@ -136,9 +137,9 @@ def test_failed_pairs_are_no_links_in_finished_results() -> None:
     )
     found = scores_of_finished(table, OBJECTIVES["reconstruction"], resamples=2, seed=0)
     scores = dict(zip(found.alternatives, found.scores, strict=True))
-    # By hand: the worst coverage, .35, where it failed, and no link to any turned pair.
-    assert scores[UPRIGHT] == pytest.approx((0.95 + 0.35) / 2 * 0.05 / 1.05)
-    assert scores[TURNING] == pytest.approx(0.35)
+    # By hand: the worst quality, of 70 matches, where it failed, and no link to any turned pair.
+    assert scores[UPRIGHT] == pytest.approx((1 + np.sqrt(70 / 190)) / 2 * 0.05 / 1.05)
+    assert scores[TURNING] == pytest.approx(np.sqrt(70 / 190))
 
 
 def test_without_references_scores_are_by_inliers() -> None:

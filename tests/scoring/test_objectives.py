@@ -40,7 +40,10 @@ def test_sixteen_times_the_time_must_be_twice_as_good() -> None:
     timed = replace(plain, criteria=("total_seconds",))
     assert speed.criteria(timed) == ("total_seconds",)
     assert OBJECTIVES["efficiency"].criteria(plain) == ("recall",)
-    assert OBJECTIVES["reconstruction"].criteria(SCORE_PRESETS["models"]) == ("coverage", "links")
+    assert OBJECTIVES["reconstruction"].criteria(SCORE_PRESETS["models"]) == (
+        "expected_quality",
+        "links",
+    )
 
 
 def test_robust_is_the_mean_of_the_worst_quarter_of_the_scenes() -> None:

@@ -12,7 +12,7 @@ from scipy.stats import pearsonr, spearmanr
 import aerocues
 from aerocues.errors import ScoreError
 from aerocues.scoring.outcomes import OUTCOMES, relate_outcomes
-from aerocues.scoring.pair_figures import LINK_MATCHES
+from aerocues.scoring.pair_figures import LINK_QUALITY
 from tests.scoring.measurements import METHODS, Stored, models, row, rows
 
 NAMES = tuple(f"D{number}-E-L2-BF" for number in range(8))
@@ -120,6 +120,7 @@ def test_links_times_coverage_by_hand() -> None:
     def seen(name: str, pair: int, right: int, coverage: float, **more: Any) -> dict[str, Any]:
         turn = 180.0 if pair == 2 else 0.0
         told = {"reference": "flow", "reference_turn": turn, "ref_matches@3": right}
+        told |= {"ref_matches@1": right / 2}
         return row(name, pair, coverage=coverage, **told, **more)
 
     measured = rows(
@@ -130,8 +131,9 @@ def test_links_times_coverage_by_hand() -> None:
     )
     # Same heading: (1 + 1/2) / 2; turned: 1, or 0 where the pair failed, which covers nothing.
     same, none = (0.05 + 0.75) / 1.05, 0.05 / 1.05
+    roots = np.sqrt([120, 30, 60]) / 2
     matches = [
-        same * (1.0 if n < 5 else none) * (120 + 30 + (60 if n < 5 else 0)) / 3 for n in range(8)
+        same * (1.0 if n < 5 else none) * roots[: 3 if n < 5 else 2].sum() / 3 for n in range(8)
     ]
     quality = tuple(float(n) for n in (9, 8, 7, 6, 5, 3, 2, 1))
     figures = [{"registered_images": 18} for _ in quality]
@@ -143,11 +145,11 @@ def test_links_times_coverage_by_hand() -> None:
         for n in range(8)
     ]
     np.testing.assert_allclose(found.feature_values[:, at[0]], expected)
-    np.testing.assert_allclose(found.feature_values[:, found.features.index(LINK_MATCHES)], matches)
+    np.testing.assert_allclose(found.feature_values[:, found.features.index(LINK_QUALITY)], matches)
     assert found.spearman[at] == pytest.approx(spearmanr(expected, quality).statistic)
     # A table from elsewhere need not have all that links need.
     some = relate_outcomes(Stored(measured.drop("reference_turn"), made))
-    assert set(found.features) - set(some.features) == {"links_x_coverage", LINK_MATCHES}
+    assert set(found.features) - set(some.features) == {"links_x_coverage", LINK_QUALITY}
 
 
 def test_without_a_reference_there_are_no_links() -> None:

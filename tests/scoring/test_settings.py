@@ -24,7 +24,7 @@ from aerocues.scoring.settings import score_preset_named
         ({"weights": ("pca", "pca")}, "pca"),
         ({"aggregation": "median"}, "'median'.* arithmetic"),
         ({"failures": "ignore"}, "'ignore'.* worst, omit"),
-        ({"bounds": "none"}, "'none'.* measured, positive, unit"),
+        ({"bounds": "none"}, "'none'.* measured, positive, zero"),
     ],
 )
 def test_settings_that_do_not_exist(changes: dict[str, Any], message: str) -> None:

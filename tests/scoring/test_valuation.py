@@ -57,8 +57,8 @@ def test_robust_scores_the_worst_scene() -> None:
     assert (alone <= valuation(values, np.zeros(6, np.int64), "efficiency").of(values)).all()
 
 
-def test_links_by_class_multiply_coverage() -> None:
-    criteria = criteria_named(["coverage", "links", "total_seconds"])
+def test_links_by_class_multiply_what_is_expected() -> None:
+    criteria = criteria_named(["expected_quality", "links", "total_seconds"])
     values = np.ones((2, 4, 3))
     values[0, :, 0], values[0, :, 1] = 0.9, [1.0, 1.0, 0.0, 0.0]
     values[1, :, 0], values[1, :, 1] = 0.3, [1.0, 0.5, 0.5, 1.0]
@@ -75,6 +75,6 @@ def test_links_by_class_multiply_coverage() -> None:
         ).of(values[..., : 3 if name == "balanced" else 2])
         for name in ("reconstruction", "balanced")
     ]
-    # By hand: .9 x 1 x .05 / 1.05 and .3 x (.8 / 1.05) ** 2; 1024 times the time halves.
-    np.testing.assert_allclose(found[0], [0.9 * 0.05 / 1.05, 0.3 * (0.8 / 1.05) ** 2])
+    # By hand: 1 x 1 x .05 / 1.05 and .3 / .9 x (.8 / 1.05) ** 2; 1024 times the time halves.
+    np.testing.assert_allclose(found[0], [0.05 / 1.05, 0.3 / 0.9 * (0.8 / 1.05) ** 2])
     np.testing.assert_allclose(found[1], found[0] * [1.0, 0.5])

@@ -139,7 +139,8 @@ _BY_PAIRS: tuple[Criterion, ...] = (
     Criterion("peak_memory_mb", "lower", description="largest increase of memory in one stage"),
 )
 
-RIGHT_MATCHES = "ref_matches@3"
+RIGHT_MATCHES, EXACT_MATCHES = "ref_matches@3", "ref_matches@1"
+EXPECTED_QUALITY = "expected_quality"
 LINKS = "links"
 _REFERENCE: tuple[Criterion, ...] = (
     Criterion(
@@ -174,9 +175,19 @@ _REFERENCE: tuple[Criterion, ...] = (
     ),
     Criterion(
         "sharpness",
-        column='"ref_matches@1" / nullif("ref_matches@3", 0)',
+        column=f'"{EXACT_MATCHES}" / nullif("{RIGHT_MATCHES}", 0)',
         description="matches right within 1 px / within 3 px of the reference",
         aspect="accuracy",
+        reference=True,
+    ),
+    Criterion(
+        EXPECTED_QUALITY,
+        # A pair without right matches is a failed one only where its row says so.
+        column=f'case when "{RIGHT_MATCHES}" > 0 then "{EXACT_MATCHES}" / sqrt("{RIGHT_MATCHES}")'
+        f' when "{RIGHT_MATCHES}" = 0 then 0.0 end',
+        description="of a model, by a pair: sqrt(matches right within 3 px) x share of these that "
+        "are right within 1 px",
+        aspect="quantity",
         reference=True,
     ),
     Criterion(

@@ -23,7 +23,8 @@ class Links:
     Strips of a flight that a drone flies back are turned by 180 degrees, and few of all pairs join
     them. An alternative that links none of these loses half of the images, however well it does
     on all others. On ten flights the product of the classes, times coverage, chose the best model
-    on nine (mean regret .006; means over pairs .04 to .19).
+    on nine (mean regret .006; means over pairs .04 to .19); docs/recommend.md tells what it is
+    multiplied by since, and what that gains.
 
     Parameters
     ----------

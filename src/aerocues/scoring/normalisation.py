@@ -128,10 +128,9 @@ def _factor(links: Links | None, counts: Array, alternatives: int) -> Array:
 def normalise(means: Means, table: DecisionTable, settings: ScoreSettings) -> Array:
     """Bring all criteria into [0, 1], 1 being the best.
 
-    Under the bounds ``unit`` criteria are shares and stay as they are. Otherwise a value equal for
-    all alternatives and repeats is 1: none is worse than the best. A failed repeat counts as 0 or
-    not at all. As normalisation is linear, the mean over valid and failed repeats is that over the
-    valid ones times their share.
+    A value equal for all alternatives and repeats is 1: none is worse than the best. A failed
+    repeat counts as 0 or not at all. As normalisation is linear, the mean over valid and failed
+    repeats is that over the valid ones times their share.
 
     Returns
     -------
@@ -141,8 +140,8 @@ def normalise(means: Means, table: DecisionTable, settings: ScoreSettings) -> Ar
     low, high = means.low, means.high
     if settings.bounds == "positive":
         low = means.least_positive
-    elif settings.bounds == "unit":
-        low, high = np.zeros_like(low), np.ones_like(high)
+    elif settings.bounds == "zero":
+        low = np.zeros_like(low)
     width = (high - low)[:, None, :]
     offset = means.mean - low[:, None, :]
     known = np.isfinite(width) & (width > 0)

@@ -139,8 +139,8 @@ OBJECTIVES: dict[str, Objective] = {
         Objective(
             "reconstruction",
             "the best 3D models",
-            "links by class of pairs, turned or not, times coverage by right matches: it chose the "
-            "best model on 9 of 10 flights",
+            "links by class of pairs, turned or not, times sqrt(right matches) x the share of them "
+            "that are right within 1 px: like the quality of models, points and accuracy",
             preset="models",
         ),
         Objective(

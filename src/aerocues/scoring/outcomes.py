@@ -82,8 +82,8 @@ class Relations:
         Figures that vary.
     feature_values : (combinations, features) float64
         Means over the successful pairs, the share of these pairs, and, where pairs have a
-        reference, links by class of pairs (`Links.factor`) x coverage and x right matches; NaN
-        if unknown.
+        reference, links by class of pairs (`Links.factor`) x coverage and x the quality that is
+        expected; NaN if unknown.
     outcome_values : (combinations, outcomes) float64
         NaN if unknown, or if it describes a model that did not succeed.
     pearson, spearman : (features, outcomes) float64

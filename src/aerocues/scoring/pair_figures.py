@@ -14,7 +14,12 @@ from aerocues.scoring.combinations import (
     decision_table,
     has_reference,
 )
-from aerocues.scoring.criteria import RIGHT_MATCHES, criteria_named
+from aerocues.scoring.criteria import (
+    EXACT_MATCHES,
+    EXPECTED_QUALITY,
+    RIGHT_MATCHES,
+    criteria_named,
+)
 from aerocues.scoring.long_form import values_of
 
 if TYPE_CHECKING:
@@ -22,8 +27,9 @@ if TYPE_CHECKING:
 
 SUCCESS_RATE = "success_rate"
 LINK_COVERAGE = "links_x_coverage"
-LINK_MATCHES = "links_x_right_matches"
-LINKED = {"coverage": LINK_COVERAGE, RIGHT_MATCHES: LINK_MATCHES}
+LINK_QUALITY = "links_x_expected_quality"
+OF_LINKS = ("coverage", RIGHT_MATCHES, EXACT_MATCHES, "reference_turn")
+LINKED = {"coverage": LINK_COVERAGE, EXPECTED_QUALITY: LINK_QUALITY}
 """Means that are multiplied by the links, and what the products are called."""
 # Of several thresholds of the ground truth only the middle one: the others are almost redundant.
 CRITERIA = (
@@ -69,7 +75,7 @@ def figures_of_pairs(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
     pl.DataFrame
         One row per combination: the share of its successful pairs, means over these of what was
         measured, and, where pairs have a reference, links by class of pairs times coverage and
-        times right matches.
+        times the expected quality.
     """
     import polars as pl
 
@@ -91,7 +97,7 @@ def figures_of_pairs(rows: pl.DataFrame, *, chance_fails: bool) -> pl.DataFrame:
             pl.col(names).filter(pl.col(SUCCESS_RATE) & pl.col(names).is_finite()).mean(),
         )
     )
-    if not (has_reference(rows) and {*LINKED, "reference_turn"} <= set(rows.columns)):
+    if not (has_reference(rows) and set(OF_LINKS) <= set(rows.columns)):
         return means
     return means.join(_linked(rows, chance_fails=chance_fails), on=COMBINATION, how="left")
 

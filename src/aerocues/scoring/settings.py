@@ -14,8 +14,8 @@ Names = str | Sequence[str]
 """Names one by one, or in a text with commas."""
 Failures = Literal["worst", "omit"]
 FAILURES: tuple[Failures, ...] = ("worst", "omit")
-Bounds = Literal["measured", "positive", "unit"]
-BOUNDS: tuple[Bounds, ...] = ("measured", "positive", "unit")
+Bounds = Literal["measured", "positive", "zero"]
+BOUNDS: tuple[Bounds, ...] = ("measured", "positive", "zero")
 
 
 def names_of(names: Names) -> tuple[str, ...]:
@@ -43,10 +43,9 @@ class ScoreSettings:
         Aggregation of the weights of the methods: a row of `aggregation.AGGREGATIONS`.
     failures : {"worst", "omit"}
         Whether a failed repeat counts as the worst value of each criterion, or not at all.
-    bounds : {"measured", "positive", "unit"}
+    bounds : {"measured", "positive", "zero"}
         Whether values are normalised by the smallest and largest measured ones, by the smallest
-        above 0 and the largest, or by 0 and 1: for criteria that are shares, whose size is to
-        count.
+        above 0 and the largest, or by 0 and the largest: for criteria whose ratios are to count.
     needs_first : bool
         Whether an alternative has no score if it failed on the first repeat. Its measurements
         count for the bounds nevertheless.
@@ -147,11 +146,11 @@ SCORE_PRESETS: dict[str, ScorePreset] = {
         ),
         ScorePreset(
             "models",
-            ("coverage",),
-            ScoreSettings(alpha=1.0, bounds="unit"),
+            ("expected_quality",),
+            ScoreSettings(alpha=1.0, bounds="zero"),
             chance_fails=True,
-            description="what leads to good 3D models: coverage by right matches, times the links "
-            "of each class of pairs",
+            description="what leads to good 3D models: many right matches, and exact ones, times "
+            "the links of each class of pairs",
             links=True,
         ),
         ScorePreset(

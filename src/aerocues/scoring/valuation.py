@@ -56,8 +56,8 @@ class Valuation:
         self._links = names.index(LINKS) if LINKS in names else None
         self._classes = np.zeros(expected.shape[1], np.int64) if classes is None else classes
         low, high = expected.min(axis=(0, 1)), expected.max(axis=(0, 1))
-        if settings.bounds == "unit":
-            low, high = np.zeros_like(low), np.ones_like(high)
+        if settings.bounds == "zero":
+            low = np.zeros_like(low)
         self._low = low
         self._width = np.where(high > self._low, high - self._low, 1.0)
         self._member = _membership(blocks)

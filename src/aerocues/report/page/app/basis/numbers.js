@@ -73,7 +73,7 @@ const LABELS = {
   cloud_distance_median: "C2C median", cloud_distance_rms: "C2C RMS", cloud_distance_p95: "C2C 95th percentile",
   reference_distance_median: "C2C reverse, median", reference_distance_rms: "C2C reverse, RMS",
   reference_distance_p95: "C2C reverse, 95th percentile", reconstruction_seconds: "reconstruction time",
-  links_x_coverage: "links × coverage", links_x_right_matches: "links × right matches", model_quality: "quality of the model",
+  links_x_coverage: "links × coverage", links_x_expected_quality: "links × expected quality", expected_quality: "expected quality", model_quality: "quality of the model",
 };
 
 /** A column's name in words: `gt_precision@3` as "true precision at 3 px".

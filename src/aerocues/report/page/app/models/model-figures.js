@@ -88,7 +88,7 @@ export const OUTCOME_SCATTER = {
   read: "One dot per combination. Choose a measurement of pairs and a property of the models.",
   controls: [
     {name: "x", label: "Horizontal", options: entry => relationOptions(entry, "features"),
-      fallback: entry => preferredOption(relationOptions(entry, "features"), ["links_x_coverage", "recall_beyond_chance", "recall", "inliers"])},
+      fallback: entry => preferredOption(relationOptions(entry, "features"), ["links_x_expected_quality", "recall_beyond_chance", "recall", "inliers"])},
     {name: "y", label: "Vertical", options: entry => relationOptions(entry, "outcomes"),
       fallback: entry => preferredOption(relationOptions(entry, "outcomes"), ["model_quality", "points_3d"])},
     colourControl("detector"),
