@@ -85,7 +85,7 @@ class Finding:
             )
         else:
             told = (
-                f"{score} {interval}, where 1 is the best pair of all and every pair is surely "
+                f"a score of {score} {interval}, where 1 is the best pair of all and all are surely "
                 f"linked, over {pairs}; the probability that it is the best is {self.probability}"
             )
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
