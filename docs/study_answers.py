@@ -85,8 +85,9 @@ class Finding:
             )
         else:
             told = (
-                f"a score of {score} {interval}, where 1 is the best pair of all and all are surely "
-                f"linked, over {pairs}; the probability that it is the best is {self.probability}"
+                f"a score of {score} {interval}, where 1 is the best pair of all and all pairs are "
+                f"surely linked, over {pairs}; the probability that it is the best is "
+                f"{self.probability}"
             )
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
         if 2 * worse >= others:
