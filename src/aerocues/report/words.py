@@ -12,11 +12,11 @@ WORDS: Mapping[str, str] = {
     "mapper, so that you see what a choice gains.",
     "beyond chance": "What is left after the inliers that shuffled matches would also give are "
     "taken away.",
-    "expected_quality": "Of a model, by a pair: the root of its right matches times the share of "
-    "them that are right within 1 px.",
     "coverage": "Share of the cells of a 16 x 16 grid on image 1 that hold a right match.",
     "CUES": "Composite Unsupervised Efficiency Score: weighted sum of the normalised criteria, "
     "with weights from the data.",
+    "expected quality": "Of a model, by a pair: the root of its right matches times the share of "
+    "them that are right within 1 px.",
     "inlier": "A match that agrees with the geometry that was estimated from all matches of a "
     "pair.",
     "pareto front": "The combinations of which none is better in both of two criteria, such as "
