@@ -2,7 +2,7 @@
 
     python benchmarks/model_scores.py WORK [RESULTS...]
 
-Flies four simulated surveys that no score was chosen on, measures `COMBINATIONS` on their
+Flies four simulated surveys, measures `COMBINATIONS` on their
 representative pairs and builds a model with each, 800 pixels and 2,000 keypoints; then prints, for
 these and for other results with models, such as parts of the study: Spearman's correlation of each
 score with the quality of the models, and how much worse the model of its best is than the best
