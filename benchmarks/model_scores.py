@@ -2,11 +2,11 @@
 
     python benchmarks/model_scores.py WORK [RESULTS...]
 
-Flies four simulated surveys, measures `COMBINATIONS` on their
-representative pairs and builds a model with each, 800 pixels and 2,000 keypoints; then prints, for
-these and for other results with models, such as parts of the study: Spearman's correlation of each
-score with the quality of the models, and how much worse the model of its best is than the best
-one. A second table multiplies by (least seconds / seconds) to the power 0.1, as `balanced` does.
+Flies four simulated surveys, measures `COMBINATIONS` on their representative pairs and builds a
+model with each, 800 pixels and 2,000 keypoints; then prints, for these and for other results with
+models, such as parts of the study: Spearman's correlation of each score with the quality of the
+models, and how much worse the model of its best is than the best one. A second table multiplies by
+the time as `balanced` does.
 Interrupted, it goes on. The surveys take about 20 minutes on one core.
 """
 
@@ -29,6 +29,7 @@ from aerocues.results.combination_columns import COMBINATION, combination_name
 from aerocues.results.model_quality import MODEL_QUALITY
 from aerocues.scoring.combinations import decision_table
 from aerocues.scoring.criteria import criteria_named
+from aerocues.scoring.objectives import OBJECTIVES
 
 Array = NDArray[np.float64]
 FLIGHTS: Mapping[str, tuple[str, int, dict[str, object]]] = {
@@ -50,7 +51,6 @@ FEATURES = {
 }
 COMBINATIONS = [f"{each}-{norm}-EXACT" for norm, own in FEATURES.items() for each in own.split()]
 CRITERIA = ("coverage", "ref_matches@3", "expected_quality", "total_seconds")
-TIME_POWER = 0.1
 
 
 def flown(name: str, work: Path) -> Path:
@@ -79,8 +79,7 @@ class Figures:
     @property
     def hurry(self) -> Array:
         """What `balanced` multiplies by."""
-        seconds = np.maximum(self.means["total_seconds"], 1e-9)
-        return np.asarray((seconds.min() / seconds) ** TIME_POWER)
+        return OBJECTIVES["balanced"].hurry(self.means["total_seconds"])
 
 
 SCORES: Mapping[str, Callable[[Figures], Array]] = {

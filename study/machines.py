@@ -26,9 +26,11 @@ def remove_rows_of_others(folder: Path) -> int:
         own = rows.filter(~_of_others())
         if len(own) < len(rows):
             store.leave_out(keys)
-            store.write_rows(content_hash(sorted(own["row_key"])), own.to_dicts())
+            name = content_hash(sorted(own["row_key"]))
+            store.write_rows(name, own.to_dicts())
             for file in files:
-                file.unlink()
+                if file.stem != name:  # these rows alone may have been kept before
+                    file.unlink()
     return len(keys)
 
 

@@ -190,8 +190,7 @@ class Study:
             shutil.copytree(kept, folder, dirs_exist_ok=True)
         if not (folder / RUN).is_file():
             return
-        number = drop_outdated(folder, step.part)
-        reasons = {"other parameters": number}
+        reasons = {"other parameters": drop_outdated(folder, step.part)}
         if self.one_machine:
             reasons["other machines"] = remove_rows_of_others(folder)
         if number := sum(reasons.values()):

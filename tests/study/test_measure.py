@@ -17,6 +17,7 @@ import pytest
 import aerocues
 from aerocues.errors import ArgumentError
 from study.flights import make_flight
+from study.machines import remove_rows_of_others
 from study.measure import main
 from study.measuring import Study
 from study.plan import CONFIGURATION, read_plan
@@ -189,6 +190,12 @@ def test_rows_of_other_machines_are_measured_again_where_asked_for(
     steps = aerocues.Results(tmp_path / "database" / "views").settings["study"]["steps"]
     assert all(step["finished"] for step in steps.values())
     assert not main([*words, "--one-machine"])
+    # What is kept may be what was kept before.
+    folder = tmp_path / "work" / "views"
+    for part in (folder / "parts").glob("GFTT*.parquet"):
+        pl.read_parquet(part).with_columns(pl.lit("another").alias("machine")).write_parquet(part)
+    assert remove_rows_of_others(folder) == 3
+    assert aerocues.Results(folder).table()["detector"].to_list() == ["ORB"] * 6
 
 
 def test_what_is_asked_for_must_exist(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
