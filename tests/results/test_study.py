@@ -57,6 +57,13 @@ def test_it_answers_queries_over_its_tables(database: Path) -> None:
         aerocues.Study(database).sql("DELETE FROM results")
 
 
+def test_an_unknown_column_is_told_with_the_table_that_has_it(database: Path) -> None:
+    with pytest.raises(StoreError, match="only in the table results; 'aerocues study --columns'"):
+        aerocues.Study(database).sql("SELECT total_seconds FROM reconstructions")
+    with pytest.raises(StoreError, match="recal does not exist; did you mean recall"):
+        aerocues.Study(database).sql("SELECT recal FROM results")
+
+
 def test_each_column_of_its_tables_is_in_the_dictionary(database: Path) -> None:
     study, described = aerocues.Study(database), dictionary()
     tables = (study.parts(), study.table(), study.reconstructions())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -26,7 +26,11 @@ NO_COLUMN = re.compile(r"""(?:unable to find column|no column named) ["'](.+?)["
 LONGEST_REASON = 160
 
 
-def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+def answer(
+    query: str,
+    tables: Mapping[str, pl.DataFrame],
+    listing: str = "aerocues results RESULTS --columns",
+) -> pl.DataFrame:
     """Answer a read-only query.
 
     Parameters
@@ -34,6 +38,8 @@ def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     query : str
         SQL in the dialect of polars.
     tables : mapping of str to pl.DataFrame
+    listing : str
+        The command that lists the columns, which errors name.
 
     Raises
     ------
@@ -61,22 +67,26 @@ def answer(query: str, tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
             raise no_files
         return answer.collect()
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
-        names = chain.from_iterable(table.columns for table in tables.values())
-        raise StoreError(_reason(str(error), names, tables)) from error
+        columns = {name: table.columns for name, table in tables.items()}
+        raise StoreError(_reason(str(error), columns, listing)) from error
 
 
-def _reason(message: str, columns: Iterable[str], tables: Iterable[str]) -> str:
+def _reason(message: str, tables: Mapping[str, Sequence[str]], listing: str) -> str:
     """The first line of the message of polars; the rest shows how it parsed the query."""
     first = message.partition("\n")[0]
     if unknown := NO_COLUMN.search(first):
-        close = get_close_matches(unknown[1], list(dict.fromkeys(columns)), n=3)
-        hint = f"did you mean {' or '.join(close)}? " if close else ""
-        return (
-            f"the column {unknown[1]} does not exist; {hint}"
-            "'aerocues results RESULTS --columns' lists all"
-        )
+        return f"{_no_column(unknown[1], tables)}'{listing}' lists all"
     cut = first if len(first) <= LONGEST_REASON else f"{first[:LONGEST_REASON]}..."
     return (
         f"the query failed: {cut}; the tables are {' and '.join(tables)}, and names such as "
         '"gt_precision@3" need double quotes'
     )
+
+
+def _no_column(name: str, tables: Mapping[str, Sequence[str]]) -> str:
+    """That there is no such column, and where it or a similar one is."""
+    if elsewhere := [table for table, columns in tables.items() if name in columns]:
+        return f"the column {name} is only in the table {' and '.join(elsewhere)}; "
+    close = get_close_matches(name, list(dict.fromkeys(chain(*tables.values()))), n=3)
+    hint = f"did you mean {' or '.join(close)}? " if close else ""
+    return f"the column {name} does not exist; {hint}"

@@ -106,10 +106,12 @@ class Study:
         """
         from aerocues.results.queries import answer
 
-        models = self.reconstructions()
-        return answer(
-            query, {"parts": self.parts(), "results": self.table(), "reconstructions": models}
-        )
+        tables = {
+            "parts": self.parts(),
+            "results": self.table(),
+            "reconstructions": self.reconstructions(),
+        }
+        return answer(query, tables, listing="aerocues study --columns")
 
     def pack(self, file: str | Path) -> Path:
         """Write all parts into one zip file, which `Study` can open elsewhere.
