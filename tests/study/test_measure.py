@@ -279,7 +279,7 @@ def test_the_configuration_of_the_study_is_sound() -> None:
     assert len(names) > 15
     assert plan.steps[0].round is not None
     hours = sum(step.seconds({}) for step in plan.steps if not step.missing()) / 3600
-    assert hours < 9
+    assert hours < 12
 
 
 @pytest.mark.parametrize(
