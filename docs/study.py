@@ -26,6 +26,7 @@ PAGES: dict[str, tuple[str, ...]] = {
             "advice",
             "main-finding",
             "changes",
+            "models",
             "binary",
             "flann",
             "oblique",

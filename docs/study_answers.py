@@ -11,7 +11,8 @@ import polars as pl
 import aerocues
 from aerocues.phrases import count, likelihood
 from aerocues.results.timing import DISTURBED
-from docs.study_parts import MOST_NAMED, NOT_YET, Parts
+from docs.study_models import Models
+from docs.study_parts import MOST_NAMED, NOT_YET
 from docs.study_queries import console, markdown
 from study.outdated import outdated_rows
 from study.plan import read_plan
@@ -30,6 +31,7 @@ CONDITIONS: tuple[tuple[str, str, str], ...] = (
 )
 """What a practitioner flies, the part of the study that shows it, and the objective.
 
+Choices and tests are by the pairs alone, as models were not built with all combinations.
 The most telling comes first, as in study.toml: the README tells of the first that is measured.
 """
 
@@ -52,8 +54,6 @@ class Finding:
 
     choice: aerocues.Choice
     ranking: aerocues.Ranking
-    models: bool
-    """Whether the ranking, but not the choice, counts models that were built."""
 
     @property
     def probability(self) -> str:
@@ -78,17 +78,11 @@ class Finding:
         row = self.ranking.frame("combination").row(0, named=True)
         interval = f"(95 % interval {row['score_low']:.2f} to {row['score_high']:.2f})"
         pairs, score = count(self.choice.pairs, "pair"), f"{row['score']:.2f}"
-        if self.models:
-            told = (
-                f"{score} {interval} by {pairs} and by the models that were built; by the pairs "
-                f"alone, the probability that it is the best is {self.probability}"
-            )
-        else:
-            told = (
-                f"a score of {score} {interval}, where 1 is the best pair of all and all pairs are "
-                f"surely linked, over {pairs}; the probability that it is the best is "
-                f"{self.probability}"
-            )
+        told = (
+            f"a score of {score} {interval}, where 1 is the best pair of all and all pairs are "
+            f"surely linked, over {pairs}; the probability that it is the best is "
+            f"{self.probability}"
+        )
         title, worse = f"{title[0].upper()}{title[1:]}", len(self.not_worse)
         if 2 * worse >= others:
             return (
@@ -106,7 +100,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Answers(Parts):
+class Answers(Models):
     """Statements for the first screens."""
 
     def measured(self) -> str:
@@ -152,15 +146,18 @@ class Answers(Parts):
         for title, name, aim in CONDITIONS:
             for results in self.results([name]):
                 choice = aerocues.choose(results, aim)
-                ranking = aerocues.score(results, choice.presets[0])
-                of_models = any(each.reconstruction for each in ranking.scores.table.criteria)
-                found[title] = Finding(choice, ranking, of_models)
+                ranking = aerocues.score(results, choice.presets[0], reconstruction=False)
+                found[title] = Finding(choice, ranking)
         return found
 
     def main_finding(self) -> str:
-        """The first condition that was measured, in a sentence with its interval."""
-        told = (finding.sentence(title) for title, finding in self.findings.items())
-        return next(told, NOT_YET)
+        """The first condition that was measured, with its interval, and the model of its best."""
+        parts = {title: name for title, name, _ in CONDITIONS}
+        for title, finding in self.findings.items():
+            built = self.built(parts[title])
+            told = f" {built.of_the_best(finding.choice.best)}" if built else ""
+            return finding.sentence(title) + told
+        return NOT_YET
 
     def advice(self) -> str:
         """What to take under each condition."""

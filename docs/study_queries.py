@@ -29,11 +29,15 @@ AVG(CASE WHEN reference_turn <= 60 THEN COALESCE("ref_matches@3", 0) END) AS sam
 AVG(CASE WHEN reference_turn > 60 THEN COALESCE("ref_matches@3", 0) END) AS turned
 FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK' AND matcher = 'BF'
 GROUP BY detector ORDER BY detector"""
+MODELS = """SELECT detector, descriptor, matcher, placed_images, points_in_3_images,
+reprojection_error, reconstruction_seconds, model_quality FROM reconstructions
+WHERE part = 'brighton-flown-tuned' AND model_quality > 0 ORDER BY model_quality DESC LIMIT 5"""
 QUERIES: dict[str, tuple[str, tuple[str, ...]]] = {
     "binary": (BINARY, ("brighton-flown-tuned", "suburb-nadir-tuned", "suburb-oblique-tuned")),
     "flann": (FLANN, ("brighton-flann-8000",)),
     "oblique": (OBLIQUE, ("suburb-nadir-tuned", "suburb-oblique-tuned")),
     "turned": (TURNED, ("brighton-flown-tuned",)),
+    "models": (MODELS, ("brighton-flown-tuned",)),
 }
 """Questions to the database alone, and the parts that answer them."""
 

@@ -12,6 +12,7 @@ from aerocues.errors import ScoreError
 from aerocues.results.model_quality import MODEL_QUALITY
 from aerocues.results.study_dictionary import dictionary
 from aerocues.scoring.pair_figures import LINK_COVERAGE, LINK_QUALITY
+from aerocues.scoring.settings import Failures
 from docs.study_parts import MOST_NAMED, NOT_YET, Parts
 from docs.study_pixels import widths_compared
 from docs.study_queries import described, in_common, markdown, rank_correlation
@@ -37,6 +38,14 @@ def _best_of(values: Mapping[tuple[str, str], float], outcome: str) -> str:
     return ", ".join(f"`{name}` {own[name]:.2f}" for name in order)
 
 
+def _by_pairs(
+    found: aerocues.Results, preset: str, failures: Failures | None = None
+) -> pl.DataFrame:
+    """The ranking by pairs alone: models were built in few parts, and there not with all."""
+    ranking = aerocues.score(found, preset, failures=failures, reconstruction=False, resamples=2)
+    return ranking.frame("combination")
+
+
 @dataclass(frozen=True)
 class Tables(Parts):
     """Statements about criteria, presets and sets of methods, and the data card."""
@@ -48,14 +57,11 @@ class Tables(Parts):
         lines: list[tuple[str, ...]] = [(*heads, *(f"agreement: {way}" for way in ways))]
         for name in (name for name in self.names if name.endswith("-tuned")):
             [found] = self.results([name])
-            usual = aerocues.score(found, "default", resamples=2).frame("combination")
-            others = [
-                aerocues.score(found, preset, resamples=2)
-                if preset
-                else aerocues.score(found, "default", failures="omit", resamples=2)
+            usual = _by_pairs(found, "default")
+            frames = [
+                _by_pairs(found, preset) if preset else _by_pairs(found, "default", failures="omit")
                 for preset in ways.values()
             ]
-            frames = [each.frame("combination") for each in others]
             bests = [f"`{frame['combination'][0]}`" for frame in (usual, *frames)]
             agreement = [rank_correlation(usual, frame) for frame in frames]
             lines.append((f"`{name}`", *bests, *agreement))
