@@ -26,6 +26,7 @@ PAGES: dict[str, tuple[str, ...]] = {
             "advice",
             "main-finding",
             "changes",
+            "models-finding",
             "models",
             "binary",
             "flann",
@@ -35,10 +36,10 @@ PAGES: dict[str, tuple[str, ...]] = {
             "failures",
             "stale-keypoints",
         ),
-        *("predictors", "presets", "learned", "extra", "pixels"),
+        *("predictors", "presets", "learned", "extra", "pixels", "reached"),
     ),
     "study/README.md": ("parts", "versions", "dictionary"),
-    "README.md": ("main-finding",),
+    "README.md": ("main-finding", "models-finding"),
 }
 
 

@@ -10,7 +10,7 @@ import polars as pl
 
 import aerocues
 from aerocues.phrases import count, likelihood
-from aerocues.results.timing import DISTURBED
+from docs.study_losses import Losses
 from docs.study_models import Models
 from docs.study_parts import MOST_NAMED, NOT_YET
 from docs.study_queries import console, markdown
@@ -26,7 +26,7 @@ CONDITIONS: tuple[tuple[str, str, str], ...] = (
     ("low texture (fields), oblique", "fields-oblique-tuned", "reconstruction"),
     ("low texture, oblique, there and back", "fields-natural-tuned", "reconstruction"),
     ("different kinds of image (Oxford)", "oxford-tuned", "accuracy"),
-    ("boards: the first of these flights, by speed", "brighton-flown-tuned", "speed"),
+    ("where time counts: the first of these flights, by speed", "brighton-flown-tuned", "speed"),
     ("neighbouring images of five projects", "uav-tuned", "reconstruction"),
 )
 """What a practitioner flies, the part of the study that shows it, and the objective.
@@ -46,6 +46,19 @@ def _mixed(table: pl.DataFrame) -> str:
     number = kinds.filter(pl.col("machine") > 1).height
     told = "with times of several kinds of machine, which do not compare"
     return f" {count(number, 'part')} {told}." if number else ""
+
+
+def _verdict(kind: str, brute: Mapping[str, float], flann: Mapping[str, float]) -> str:
+    """Whether FLANN pays: more right matches in a second of the whole pair."""
+    to_match, right, in_all = (
+        flann[name] / brute[name] for name in ("seconds", "right_matches", "in_all")
+    )
+    verdict = "it pays" if right > in_all else "it does not pay"
+    return (
+        f"For {kind}, FLANN takes {to_match:.2f} of the time of brute force to match and finds "
+        f"{right:.0%} of its right matches, in {in_all:.2f} of the time of the whole pair: "
+        f"{verdict}."
+    )
 
 
 @dataclass(frozen=True)
@@ -100,7 +113,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Answers(Models):
+class Answers(Models, Losses):
     """Statements for the first screens."""
 
     def measured(self) -> str:
@@ -112,21 +125,15 @@ class Answers(Models):
         failed = rows - int(parts["ok"].sum())
         most = parts.select(pl.max("combinations")).item()
         table = self.study.table()
-        timed = table.filter(pl.col("timing") == "exclusive")
-        shared = int((timed["wall_over_cpu"] > DISTURBED).sum())
-        times = (
-            f"{count(len(timed), 'row')} timed alone, {shared:,} of which had to share the core "
-            "with other programs all the same; others are scaled by these."
-            if len(timed)
-            else "No row was timed alone yet: times are those of a busy machine."
-        )
+        timed = int((table["timing"] == "exclusive").sum())
         return (
             f"So far: {count(rows, 'row')} in {count(len(parts), 'part')}, of which "
             f"{failed:,} failed or are not better than chance, and "
             f"{count(models, 'reconstruction')}; up to {most} of 340 combinations a part; "
             f"{parts['cpu_hours'].sum():.2f} CPU hours for {parts['covered'].sum():,} of these "
             "(of the others none are known). "
-            f"{times} {count(int(parts['again'].sum()), 'row')} measured again: "
+            f"{count(timed, 'row')} timed alone; the times of others are scaled by these or, where "
+            f"these failed, estimated. {count(int(parts['again'].sum()), 'row')} measured again: "
             f"{parts['identical'].sum():,} with identical quality."
             f"{self._outdated(table)}{_mixed(table)}"
         )
@@ -187,46 +194,19 @@ class Answers(Models):
             f"{count(len(bests), 'combination', 'different combinations')}: {named}."
         )
 
-    def suffers(self, query: str, before: str, after: str) -> str:
-        """Which detector loses most of its right matches, and all others."""
-        found = self.table(query)
-        if not found.is_empty():
-            kept = (pl.col(after) / pl.col(before)).alias("kept")
-            found = found.drop_nulls().filter(pl.col(before) > 0).with_columns(kept).sort("kept")
-        if found.is_empty():
-            return f"{console(query)}\n\n{NOT_YET}"
-        least, most = found.row(0, named=True), found.row(-1, named=True)
-        told = (
-            f"{least['detector']} suffers most: it keeps {least['kept']:.0%} of its right matches "
-            f"({least[before]:.0f} a pair become {least[after]:.0f}); {most['detector']} keeps "
-            f"{most['kept']:.0%}."
-        )
-        lines = [("detector, with BRISK", before.replace("_", " "), after, "kept")]
-        for row in found.iter_rows(named=True):
-            figures = (f"{row[before]:.0f}", f"{row[after]:.0f}", f"{row['kept']:.0%}")
-            lines.append((row["detector"], *figures))
-        return f"{console(query)}\n\n{told}\n\n{markdown(lines)}"
-
-    def oblique(self) -> str:
-        """Detectors on an oblique layer against a nadir one."""
-        return self.suffers("oblique", "nadir", "oblique")
-
-    def turned(self) -> str:
-        """Detectors on turned pairs against others."""
-        return self.suffers("turned", "same_heading", "turned")
-
     def binary(self) -> str:
         """The best binary combinations under 50 ms."""
         found = self.table("binary")
         if found.is_empty():
             return f"{console('binary')}\n\n{NOT_YET}"
         lines: list[tuple[str, ...]] = [
-            ("combination", "pairs", "coverage", "ms an image", "ms to match a pair")
+            ("combination", "pairs", "coverage", "pairs ok", "ms an image", "ms to match a pair")
         ]
         for row in found.iter_rows(named=True):
             name = f"`{row['detector']}-{row['descriptor']}-HAM-{row['matcher']}`"
             times = (f"{row[each] * 1e3:.0f}" for each in ("seconds", "to_match"))
-            lines.append((name, str(row["pairs"]), f"{row['coverage']:.3f}", *times))
+            shares = (f"{row['coverage']:.3f}", f"{row['ok']:.0%}")
+            lines.append((name, str(row["pairs"]), *shares, *times))
         return f"{console('binary')}\n\n{markdown(lines)}"
 
     def flann(self) -> str:
@@ -234,21 +214,15 @@ class Answers(Models):
         found = self.table("flann")
         if found.is_empty():
             return f"{console('flann')}\n\n{NOT_YET}"
-        lines = [("descriptors", "matcher", "rows", "CPU s to match", "right matches a pair")]
+        heads = ("CPU s to match", "CPU s a pair in all", "right matches a pair")
+        lines: list[tuple[str, ...]] = [("descriptors", "matcher", "rows", *heads)]
         told = []
         for row in found.iter_rows(named=True):
-            kind = KINDS[row["norm"]]
-            figures = (f"{row['seconds']:.2f}", f"{row['right_matches']:.0f}")
-            lines.append((kind, row["matcher"], str(row["pairs"]), *figures))
+            seconds = (f"{row[each]:.2f}" for each in ("seconds", "in_all"))
+            right, kind = f"{row['right_matches']:.0f}", KINDS[row["norm"]]
+            lines.append((kind, row["matcher"], str(row["pairs"]), *seconds, right))
         for norm, kind in KINDS.items():
             own = {row["matcher"]: row for row in found.filter(norm=norm).iter_rows(named=True)}
             if {"BF", "FLANN"} <= own.keys() and own["BF"]["right_matches"] > 0:
-                share, right = (
-                    own["FLANN"][name] / own["BF"][name] for name in ("seconds", "right_matches")
-                )
-                verdict = "pays" if share < 1 else "does not pay"
-                told.append(
-                    f"For {kind}, FLANN takes {share:.2f} of the time of brute force and finds "
-                    f"{right:.0%} of its right matches: it {verdict}."
-                )
+                told.append(_verdict(kind, own["BF"], own["FLANN"]))
         return f"{console('flann')}\n\n{' '.join(told)}\n\n{markdown(lines)}"

@@ -9,26 +9,34 @@ from scipy.stats import spearmanr
 
 from aerocues.results.schema import Column
 
-BINARY = """SELECT detector, descriptor, matcher, COUNT(*) AS pairs,
-AVG(COALESCE(coverage, 0)) AS coverage,
-MEDIAN((detect_seconds_1_cpu + detect_seconds_2_cpu + describe_seconds_1_cpu
-+ describe_seconds_2_cpu) / 2) AS seconds, MEDIAN(match_seconds_cpu) AS to_match
-FROM results WHERE norm = 'HAM' AND reference = 'flow' AND part IN
-('brighton-flown-tuned', 'suburb-nadir-tuned', 'suburb-oblique-tuned')
-GROUP BY detector, descriptor, matcher HAVING seconds < 0.05 AND COUNT(DISTINCT part) = 3
+BINARY = """SELECT detector, descriptor, matcher, SUM(tried) AS pairs, MIN(covered) AS coverage,
+MIN(share) AS ok, MAX(one) AS seconds, MAX(two) AS to_match FROM (
+SELECT part, detector, descriptor, matcher, COUNT(*) AS tried,
+AVG(CASE WHEN status = 'ok' THEN 1.0 ELSE 0.0 END) AS share,
+AVG(CASE WHEN status = 'ok' THEN COALESCE(coverage, 0) ELSE 0 END) AS covered,
+MEDIAN((detect_seconds_1 + detect_seconds_2 + describe_seconds_1 + describe_seconds_2) / 2) AS one,
+MEDIAN(match_seconds) AS two FROM results WHERE norm = 'HAM' AND reference = 'flow'
+AND part IN ('brighton-flown-tuned', 'suburb-nadir-tuned', 'suburb-oblique-tuned')
+GROUP BY part, detector, descriptor, matcher) AS flights
+GROUP BY detector, descriptor, matcher HAVING seconds < 0.05 AND COUNT(*) = 3
 ORDER BY coverage DESC LIMIT 5"""
-FLANN = """SELECT norm, matcher, COUNT(*) AS pairs, AVG(match_seconds_cpu) AS seconds,
-AVG(COALESCE("ref_matches@3", 0)) AS right_matches FROM results
-WHERE part = 'brighton-flann-8000' GROUP BY norm, matcher ORDER BY norm, matcher"""
+FLANN = """SELECT norm, matcher, COUNT(*) AS pairs, AVG(match_seconds) AS seconds,
+AVG(total_seconds) AS in_all,
+AVG(CASE WHEN status = 'ok' THEN COALESCE("ref_matches@3", 0) ELSE 0 END) AS right_matches
+FROM results WHERE part = 'brighton-flann-8000' AND reference = 'flow'
+GROUP BY norm, matcher ORDER BY norm, matcher"""
 OBLIQUE = """SELECT detector,
-AVG(CASE WHEN part = 'suburb-nadir-tuned' THEN COALESCE("ref_matches@3", 0) END) AS nadir,
-AVG(CASE WHEN part = 'suburb-oblique-tuned' THEN COALESCE("ref_matches@3", 0) END) AS oblique
-FROM results WHERE descriptor = 'BRISK' AND matcher = 'BF' GROUP BY detector ORDER BY detector"""
-TURNED = """SELECT detector,
-AVG(CASE WHEN reference_turn <= 60 THEN COALESCE("ref_matches@3", 0) END) AS same_heading,
-AVG(CASE WHEN reference_turn > 60 THEN COALESCE("ref_matches@3", 0) END) AS turned
-FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK' AND matcher = 'BF'
+AVG(CASE WHEN part = 'suburb-nadir-tuned' THEN found END) AS nadir,
+AVG(CASE WHEN part = 'suburb-oblique-tuned' THEN found END) AS oblique FROM (
+SELECT detector, part, CASE WHEN status = 'ok' THEN COALESCE("ref_matches@3", 0) ELSE 0 END
+AS found FROM results WHERE descriptor = 'BRISK' AND matcher = 'BF') AS rows
 GROUP BY detector ORDER BY detector"""
+TURNED = """SELECT detector,
+AVG(CASE WHEN reference_turn <= 60 THEN found END) AS same_heading,
+AVG(CASE WHEN reference_turn > 60 THEN found END) AS turned FROM (
+SELECT detector, reference_turn, CASE WHEN status = 'ok' THEN COALESCE("ref_matches@3", 0) ELSE 0
+END AS found FROM results WHERE part = 'brighton-flown-tuned' AND descriptor = 'BRISK'
+AND matcher = 'BF') AS rows GROUP BY detector ORDER BY detector"""
 MODELS = """SELECT detector, descriptor, matcher, placed_images, points_in_3_images,
 reprojection_error, reconstruction_seconds, model_quality FROM reconstructions
 WHERE part = 'brighton-flown-tuned' AND model_quality > 0 ORDER BY model_quality DESC LIMIT 5"""
@@ -65,12 +73,19 @@ def rank_correlation(first: pl.DataFrame, second: pl.DataFrame) -> str:
 def in_common(thesis: pl.DataFrame, tuned: pl.DataFrame) -> tuple[str, ...]:
     """Means of two runs over the combinations and pairs that both measured, by the truth.
 
-    The preset of the thesis knows no other right matches. Empty where there is no truth.
+    The preset of the thesis knows no other right matches. A row without one has 0 where the truth
+    of its pair is known. Empty where there is no truth.
     """
     keys = ["pair", "detector", "descriptor", "norm", "matcher"]
     share = pl.col("gt_precision@3")
+    known = pl.concat(each.filter(share.is_not_null())["pair"] for each in (thesis, tuned))
     figures = (share * pl.col("matches")).alias("right"), share.alias("share")
-    first, second = (each.select(*keys, *figures).drop_nulls() for each in (thesis, tuned))
+    first, second = (
+        each.filter(pl.col("pair").is_in(known.unique().implode()))
+        .select(*keys, *figures)
+        .fill_null(0.0)
+        for each in (thesis, tuned)
+    )
     both = first.join(second, on=keys)
     if both.is_empty():
         return ()

@@ -27,6 +27,9 @@ COMPARED = {
     "inliers": "inliers",
 }
 """Figures of pairs whose correlation with the quality of models is told for each part."""
+TARGET = 2_000
+REACHED = 0.95
+"""Keypoints of an image that the parts with `tuned` ask for, and the share that counts as found."""
 ENOUGH_MODELS = 8
 """Of fewer models, many figures have a high correlation by chance."""
 
@@ -125,6 +128,28 @@ class Tables(Parts):
                 if found := in_common(thesis, tuned):
                     lines.append((images, *found))
         return markdown(lines) if lines[1:] else NOT_YET
+
+    def reached(self) -> str:
+        """Which detectors find fewer keypoints than they may, by part."""
+        if self.study is None:
+            return NOT_YET
+        with_keypoints = pl.col("part").is_in(self.names) & (pl.col("max_keypoints") == TARGET)
+        found = (
+            self.study.table()
+            .filter(with_keypoints, pl.col("part").str.ends_with("-tuned"))
+            .group_by("part", "detector", "descriptor")
+            .agg(pl.col("keypoints_1").median())
+            .group_by("part", "detector")
+            .agg(pl.col("keypoints_1").max())
+            .filter(pl.col("keypoints_1") < REACHED * TARGET)
+            .sort("part", "detector")
+        )
+        told = [
+            f"{detector} on {', '.join(f'`{part}`' for part in own['part'])}"
+            for (detector,), own in found.group_by("detector", maintain_order=True)
+        ]
+        limit = f"fewer than {REACHED:.0%} of {TARGET:,} keypoints in the median image"
+        return f"These find {limit}: {'; '.join(sorted(told)) or 'none'}."
 
     def learned(self) -> str:
         """The best of the learned set beside SIFT, by part."""

@@ -10,6 +10,7 @@ from aerocues.errors import StoreError
 from aerocues.notebooks import as_html
 from aerocues.phrases import count
 from aerocues.results.combination_columns import METHODS
+from aerocues.results.cpu_times import with_cpu_times
 from aerocues.results.measured_results import Results
 from aerocues.results.packing import folder_content, zipped
 from aerocues.results.schema import Column, polars_schema
@@ -151,7 +152,7 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
     """Store a results folder as a part of a study, without what ties it to this machine.
 
     It stays a results folder, which `aerocues.run` can continue; clouds, references and the places
-    of the images are left out.
+    of the images are left out. Times become CPU times, see `with_cpu_times`.
 
     Parameters
     ----------
@@ -182,6 +183,7 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
     told = {**without_places(store.run()), FACTS: dict(facts)}
     planned, models = store.planned(), store.reconstructions()
     rows = store.rows().join(planned.select("row_key"), on="row_key", how="semi")
+    rows = with_cpu_times(rows)
     content = folder_content(told, planned, rows, models if len(models) else None)
     try:
         for file in content:
