@@ -83,8 +83,16 @@ class Built:
         return (
             f"`{self.part}`: {better} of {count(number, 'combination')} build a better model than "
             f"COLMAP's default; what the pairs choose, `{self.choice}`, has place {place}, "
-            f"with {self.share(self.choice):.0%} of the quality of the best."
+            f"with {self.share(self.choice):.0%} of the quality of the best.{self._refined()}"
         )
+
+    def _refined(self) -> str:
+        """By how much COLMAP's default changes the focal length that it begins with."""
+        lengths = dict(self.models.select(COMBINATION, "focal_length").iter_rows())
+        before, after = lengths[self.choice], lengths[COLMAP_DEFAULT]
+        if before is None or after is None:
+            return ""
+        return f" COLMAP's default refines the focal length from {before:,.0f} to {after:,.0f} px."
 
 
 @dataclass(frozen=True)

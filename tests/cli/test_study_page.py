@@ -6,6 +6,7 @@ import re
 import shlex
 import shutil
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
@@ -197,9 +198,10 @@ def test_who_suffers_most_is_told(tmp_path: Path) -> None:
 def test_the_model_of_a_choice_is_told_beside_colmaps() -> None:
     """By hand: qualities 80, 60, 40, 20; COLMAP's default is third."""
     names = ["ORB-ORB-HAM-BF", "SIFT-SIFT-L2-BF", COLMAP_DEFAULT, "MSD-BRISK-HAM-BF"]
-    figures = {COMBINATION: names, MODEL_QUALITY: [80.0, 60.0, 40.0, 20.0]}
+    figures: dict[str, list[Any]] = {COMBINATION: names, MODEL_QUALITY: [80.0, 60.0, 40.0, 20.0]}
     same = {"points_in_3_images": 9, "reprojection_error": 0.5, "position_rmse": None}
     images = {"placed_images": 4, "images": 5, "reconstruction_seconds": 7.0}
+    figures["focal_length"] = [500.0, 500.0, 640.0, 500.0]
     every = pl.DataFrame(figures).with_columns(
         **{name: pl.lit(value) for name, value in (same | images).items()}
     )
@@ -207,6 +209,7 @@ def test_the_model_of_a_choice_is_told_beside_colmaps() -> None:
     told = "`one`: 2 of 3 combinations build a better model than COLMAP's default; what the pairs"
     assert built.sentence().startswith(told)
     assert "has place 4, with 25% of the quality of the best" in built.sentence()
+    assert "refines the focal length from 500 to 640 px" in built.sentence()
     of_second = built.of_the_best("SIFT-SIFT-L2-BF")
     assert "place 2, with 75% of the quality of the best, that of ORB-ORB-HAM-BF" in of_second
     assert "COLMAP's default has place 3" in of_second
