@@ -1,4 +1,4 @@
-"""Write what the study found: docs/study.md, the card of its data, and a sentence of the README.
+"""Write what the study found: docs/study.md, the card of its data, and two sentences of the README.
 
 ``python -m docs.study`` rewrites what stands between ``<!-- NAME -->`` marks; the tests fail where
 it is out of date. A statement is made only where the database holds its rows.

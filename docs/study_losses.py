@@ -42,13 +42,18 @@ def kept_by(rows: pl.DataFrame, changed: pl.Expr) -> pl.DataFrame:
 
 
 def others_told(kept: pl.DataFrame) -> str:
-    """Which detector loses most with each other descriptor; nothing where several lose all."""
-    told = [
-        f"{descriptor} {own['detector'][0]} ({own['kept'][0]:.0%})"
-        for (descriptor,), own in kept.group_by("descriptor", maintain_order=True)
-        if descriptor != "BRISK" and len(own) >= ENOUGH_DETECTORS and own["kept"][1] >= NOTHING
-    ]
-    return f" With other descriptors: {', '.join(told)}." if told else ""
+    """Which detector loses most with each other descriptor, and with which several lose all."""
+    told, all_lost = [], []
+    for (descriptor,), own in kept.group_by("descriptor", maintain_order=True):
+        if descriptor == "BRISK" or len(own) < ENOUGH_DETECTORS:
+            continue
+        if own["kept"][1] < NOTHING:
+            all_lost.append(str(descriptor))
+        else:
+            told.append(f"{descriptor} {own['detector'][0]} ({own['kept'][0]:.0%})")
+    ones = f" With other descriptors: {', '.join(told)}." if told else ""
+    several = f" With {', '.join(all_lost)}, several detectors keep nothing." if all_lost else ""
+    return ones + several
 
 
 @dataclass(frozen=True)

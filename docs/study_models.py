@@ -24,11 +24,10 @@ FIGURES = {
     "points_in_3_images": ("points", ",.0f"),
     "reprojection_error": ("error, px", ".2f"),
     "position_rmse": ("cameras off, m", ".2f"),
+    "surface_error": ("surface off, m", ".3f"),
     "reconstruction_seconds": ("CPU s", ".0f"),
     MODEL_QUALITY: ("quality", ".0f"),
 }
-
-
 COLMAP_DEFAULT = str(BASELINE)
 
 
@@ -39,6 +38,12 @@ class Built:
     part: str
     models: pl.DataFrame
     choice: str
+
+    @property
+    def number(self) -> int:
+        """How many combinations have a model, COLMAP's default aside."""
+        others = self.models.filter(pl.col(COMBINATION) != COLMAP_DEFAULT)
+        return int((others[MODEL_QUALITY] > 0).sum())
 
     def place(self, combination: str) -> int:
         """The place of the model of a combination."""
@@ -71,18 +76,19 @@ class Built:
         if combination not in (names := self.models[COMBINATION].to_list()):
             return ""
         return (
-            f"Of the {len(names) - 1} of these that models were built with, its model has place "
+            f"Of the {self.number} of these that have a model, its model has place "
             f"{self.place(combination)}, with {self.share(combination):.0%} of the quality of the "
             f"best, that of {names[0]}; COLMAP's default has place {self.place(COLMAP_DEFAULT)}."
         )
 
     def sentence(self) -> str:
         """How many are better than COLMAP's default, and how good the choice of the pairs is."""
-        place, number = self.place(self.choice), len(self.models) - 1
+        place, number = self.place(self.choice), self.number
         better = self.place(COLMAP_DEFAULT) - 1
         return (
-            f"`{self.part}`: {better} of {count(number, 'combination')} build a better model than "
-            f"COLMAP's default; what the pairs choose, `{self.choice}`, has place {place}, "
+            f"`{self.part}`: {better} of {count(number, 'combination')} with a model have a better "
+            f"one than COLMAP's default; what the pairs choose of them, `{self.choice}`, has place "
+            f"{place}, "
             f"with {self.share(self.choice):.0%} of the quality of the best.{self._refined()}"
         )
 
@@ -106,13 +112,15 @@ class Models(Parts):
             return NOT_YET
         chosen = ", ".join(str(built.place(built.choice)) for built in every)
         default = ", ".join(str(built.place(COLMAP_DEFAULT)) for built in every)
-        number = ", ".join(dict.fromkeys(str(len(built.models)) for built in every))
+        number = ", ".join(str(built.number) for built in every)
+        parts = ", ".join(f"`{built.part}`" for built in every)
+        tried = ", ".join(dict.fromkeys(str(len(built.models) - 1) for built in every))
         least = min(built.share(built.choice) for built in every)
         return (
-            f"On {count(len(every), 'flight')} COLMAP built models with all combinations with "
-            f"brute force (VGG and BOOST aside) and with its default: {number} each. What the "
-            f"pairs alone choose has the places {chosen}, with {least:.0%} of the quality of the "
-            f"best model or more; COLMAP's default has the places {default}."
+            f"COLMAP's mapper was given the matches of {tried} combinations on {parts}: {number} "
+            f"of them have a model. What the pairs alone choose has the places {chosen}, with "
+            f"{least:.0%} of the quality of the best model or more; COLMAP's default has the "
+            f"places {default}."
         )
 
     def models(self) -> str:

@@ -73,13 +73,14 @@ def rank_correlation(first: pl.DataFrame, second: pl.DataFrame) -> str:
 def in_common(thesis: pl.DataFrame, tuned: pl.DataFrame) -> tuple[str, ...]:
     """Means of two runs over the combinations and pairs that both measured, by the truth.
 
-    The preset of the thesis knows no other right matches. A row without one has 0 where the truth
-    of its pair is known. Empty where there is no truth.
+    The preset of the thesis knows no other right matches. A failed row has 0 where the
+    truth of its pair is known. Empty where there is no truth.
     """
     keys = ["pair", "detector", "descriptor", "norm", "matcher"]
     share = pl.col("gt_precision@3")
+    found = pl.when(pl.col("status") == "ok").then(share).otherwise(0.0)
     known = pl.concat(each.filter(share.is_not_null())["pair"] for each in (thesis, tuned))
-    figures = (share * pl.col("matches")).alias("right"), share.alias("share")
+    figures = (found * pl.col("matches")).alias("right"), found.alias("share")
     first, second = (
         each.filter(pl.col("pair").is_in(known.unique().implode()))
         .select(*keys, *figures)

@@ -138,10 +138,10 @@ class Tables(Parts):
             self.study.table()
             .filter(with_keypoints, pl.col("part").str.ends_with("-tuned"))
             .group_by("part", "detector", "descriptor")
-            .agg(pl.col("keypoints_1").median())
+            .agg(pl.concat_list("keypoints_1", "keypoints_2").explode().median().alias("found"))
             .group_by("part", "detector")
-            .agg(pl.col("keypoints_1").max())
-            .filter(pl.col("keypoints_1") < REACHED * TARGET)
+            .agg(pl.col("found").max())
+            .filter(pl.col("found") < REACHED * TARGET)
             .sort("part", "detector")
         )
         told = [
@@ -149,7 +149,7 @@ class Tables(Parts):
             for (detector,), own in found.group_by("detector", maintain_order=True)
         ]
         limit = f"fewer than {REACHED:.0%} of {TARGET:,} keypoints in the median image"
-        return f"These find {limit}: {'; '.join(sorted(told)) or 'none'}."
+        return f"- Detectors that find {limit}: {'; '.join(sorted(told)) or 'none'}."
 
     def learned(self) -> str:
         """The best of the learned set beside SIFT, by part."""

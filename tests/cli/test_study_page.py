@@ -21,6 +21,7 @@ from aerocues.results.plan_table import plan_of
 from aerocues.results.schema import empty_row, polars_schema
 from aerocues.results.study import add_part
 from docs.study import PAGES, Findings, rendered
+from docs.study_losses import kept_by, others_told
 from docs.study_models import COLMAP_DEFAULT, Built
 from docs.study_parts import DATABASE, NOT_YET
 from docs.study_published import (
@@ -39,6 +40,7 @@ from tests.test_documentation import REPOSITORY, blocks
 PAGE = REPOSITORY / "docs" / "study.md"
 NAMES = ("brighton-flown-tuned", "uav-thesis", "uav-tuned", "uav-learned", "mini-1000", "mini-4000")
 
+NO_TRUTH = ("position_rmse", "surface_error")
 FINISHED = {"leaders": {"finished": "all"}}
 NEED_MORE = (
     *("binary", "extra", "flann", "models", "models-finding", "oblique", "predictors", "presets"),
@@ -108,14 +110,17 @@ def test_each_statement_is_made_of_rows_that_are_there(
 
 
 def test_presets_are_compared_by_the_truth_on_what_both_measured() -> None:
-    """By hand: pairs 0 and 1 are in both and have a known truth; on 1 the first finds nothing."""
+    """By hand: pairs 0 and 1 are in both and have a known truth; on 1 the first failed."""
 
     def rows(matches: list[int], shares: list[float | None]) -> pl.DataFrame:
         names = {"detector": "ORB", "descriptor": "ORB", "norm": "HAM", "matcher": "BF"}
+        status = ["chance" if number == 11 else "ok" for number in matches]
         figures = {"pair": range(len(matches)), "matches": matches, "gt_precision@3": shares}
-        return pl.DataFrame(figures).with_columns(**{k: pl.lit(v) for k, v in names.items()})
+        return pl.DataFrame(figures).with_columns(
+            pl.Series("status", status), **{k: pl.lit(v) for k, v in names.items()}
+        )
 
-    thesis, tuned = rows([4000, 10, 10], [0.5, None, 1.0]), rows([1000, 10], [0.75, 1.0])
+    thesis, tuned = rows([4000, 11, 10], [0.5, 0.9, 1.0]), rows([1000, 10], [0.75, 1.0])
     assert in_common(thesis, tuned) == ("1", "1,000", "380", "0.25", "0.88")
     assert in_common(rows([4000], [None]), rows([5], [None])) == ()
 
@@ -155,6 +160,13 @@ def test_published_sequences_are_recognised(shared_data: Path) -> None:
     assert len(both) == PAIRS * len(PLACES)
     ratio = (both["matches_published"] / both["matches"]).to_numpy()
     assert ratio == pytest.approx(1, abs=0.03)
+
+
+def test_the_times_of_a_part_are_cpu_times(finished: Path, stand_in: Path) -> None:
+    measured = aerocues.Results(finished).table()
+    stored = aerocues.Study(stand_in).part(NAMES[0]).table()
+    assert stored["match_seconds"].equals(measured["match_seconds_cpu"])
+    assert stored["match_seconds"].null_count() < len(stored)
 
 
 def test_a_broken_database_is_not_an_empty_one(stand_in: Path, tmp_path: Path) -> None:
@@ -199,14 +211,14 @@ def test_the_model_of_a_choice_is_told_beside_colmaps() -> None:
     """By hand: qualities 80, 60, 40, 20; COLMAP's default is third."""
     names = ["ORB-ORB-HAM-BF", "SIFT-SIFT-L2-BF", COLMAP_DEFAULT, "MSD-BRISK-HAM-BF"]
     figures: dict[str, list[Any]] = {COMBINATION: names, MODEL_QUALITY: [80.0, 60.0, 40.0, 20.0]}
-    same = {"points_in_3_images": 9, "reprojection_error": 0.5, "position_rmse": None}
+    same = {"points_in_3_images": 9, "reprojection_error": 0.5, **dict.fromkeys(NO_TRUTH)}
     images = {"placed_images": 4, "images": 5, "reconstruction_seconds": 7.0}
     figures["focal_length"] = [500.0, 500.0, 640.0, 500.0]
     every = pl.DataFrame(figures).with_columns(
         **{name: pl.lit(value) for name, value in (same | images).items()}
     )
     built = Built("one", every, "MSD-BRISK-HAM-BF")
-    told = "`one`: 2 of 3 combinations build a better model than COLMAP's default; what the pairs"
+    told = "`one`: 2 of 3 combinations with a model have a better one than COLMAP's default; what"
     assert built.sentence().startswith(told)
     assert "has place 4, with 25% of the quality of the best" in built.sentence()
     assert "refines the focal length from 500 to 640 px" in built.sentence()
@@ -220,7 +232,27 @@ def test_the_model_of_a_choice_is_told_beside_colmaps() -> None:
         ("3", "COLMAP's default"),
         ("4", "`MSD-BRISK-HAM-BF`"),
     ]
-    assert built.lines()[0][3:] == ("4 of 5", "9", "0.50", "", "7", "80")
+    assert built.lines()[0][3:] == ("4 of 5", "9", "0.50", "", "", "7", "80")
+
+
+def test_what_each_detector_keeps_is_told_by_descriptor() -> None:
+    """By hand: of 10 detectors, D0 keeps 10 of 100 with SIFT; with ORB two keep nothing."""
+    rows = [
+        {"descriptor": descriptor, "detector": f"D{at}", "matcher": "BF", "status": status}
+        | {"ref_matches@3": right, "turned": turned}
+        for descriptor in ("SIFT", "ORB")
+        for at in range(10)
+        for turned, right, status in (
+            (False, 100.0, "ok"),
+            (True, 10.0 + at, "chance" if descriptor == "ORB" and at < 2 else "ok"),
+            (None, 500.0, "ok"),
+        )
+    ]
+    kept = kept_by(pl.DataFrame(rows), pl.col("turned"))
+    assert kept.filter(detector="D3")["kept"].to_list() == pytest.approx([0.13, 0.13])
+    assert others_told(kept) == (
+        " With other descriptors: SIFT D0 (10%). With ORB, several detectors keep nothing."
+    )
 
 
 @pytest.mark.parametrize("query", QUERIES)

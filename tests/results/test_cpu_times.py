@@ -37,5 +37,7 @@ def test_times_without_cpu_times_stay() -> None:
 
 
 def test_it_changes_nothing_the_second_time() -> None:
-    once = with_cpu_times(rows(match_seconds=4.0, match_seconds_cpu=2.0))
+    cpu = {f"{name}_cpu": 1.0 for name in (*STAGES, "match_seconds", "verify_seconds")}
+    once = with_cpu_times(rows(matches=10, **cpu))
+    assert once["total_seconds"].to_list() == [4.0]
     assert with_cpu_times(once).equals(once)

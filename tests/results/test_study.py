@@ -58,7 +58,7 @@ def test_it_answers_queries_over_its_tables(database: Path) -> None:
 
 
 def test_an_unknown_column_is_told_with_the_table_that_has_it(database: Path) -> None:
-    with pytest.raises(StoreError, match="only in the table results; 'aerocues study --columns'"):
+    with pytest.raises(StoreError, match="is in results, not in the table asked; 'aerocues study"):
         aerocues.Study(database).sql("SELECT total_seconds FROM reconstructions")
     with pytest.raises(StoreError, match="recal does not exist; did you mean recall"):
         aerocues.Study(database).sql("SELECT recal FROM results")

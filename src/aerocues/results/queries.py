@@ -86,7 +86,7 @@ def _reason(message: str, tables: Mapping[str, Sequence[str]], listing: str) -> 
 def _no_column(name: str, tables: Mapping[str, Sequence[str]]) -> str:
     """That there is no such column, and where it or a similar one is."""
     if elsewhere := [table for table, columns in tables.items() if name in columns]:
-        return f"the column {name} is only in the table {' and '.join(elsewhere)}; "
+        return f"the column {name} is in {' and '.join(elsewhere)}, not in the table asked; "
     close = get_close_matches(name, list(dict.fromkeys(chain(*tables.values()))), n=3)
     hint = f"did you mean {' or '.join(close)}? " if close else ""
     return f"the column {name} does not exist; {hint}"
