@@ -223,8 +223,7 @@ class Study:
 
     def _measure_rows(self, step: Step) -> None:
         assert step.round is not None
-        # As for models: what the preset itself finds is studied.
-        arguments = {"equal_footing": False, **step.part.run, **step.round.run}
+        arguments = {**step.part.settings, **step.round.run}
         engine = {"workers": self.workers} if self.engine is None else {"engine": self.engine}
         aerocues.run(
             self.dataset(step),

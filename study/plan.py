@@ -80,6 +80,11 @@ class Part:
     models: Mapping[str, Any] = field(default_factory=dict)
 
     @property
+    def settings(self) -> dict[str, Any]:
+        """Arguments of `aerocues.run`, with the thresholds of the preset: these are studied."""
+        return {"equal_footing": False, **self.run}
+
+    @property
     def preset(self) -> Preset:
         """The preset that it is measured under."""
         return as_preset(self.run.get("preset", "default"))

@@ -87,7 +87,8 @@ def _measured_again(study: Study, step: Step, sample: pl.DataFrame) -> pl.DataFr
 def _measure_again(
     study: Study, dataset: Dataset, step: Step, sample: pl.DataFrame, folder: Path
 ) -> None:
-    settings = {k: v for k, v in step.part.run.items() if k not in ("timing", "timing_pairs")}
+    timed = ("timing", "timing_pairs")
+    settings = {k: v for k, v in step.part.settings.items() if k not in timed}
     for named, rows in sample.group_by(PAIR, maintain_order=True):
         number, image_1, image_2, sequence = named
         known = {(pair.image_1, pair.image_2): pair.homography for pair in dataset.pairs}

@@ -69,13 +69,15 @@ PLACES = ("data", "work", "database")
 
 @dataclass
 class Counted:
-    """`aerocues.run`, which counts the combinations that it is asked for."""
+    """`aerocues.run`, which counts the combinations and keeps how it is asked for them."""
 
     run: Callable[..., Any]
     rows: int = 0
+    equal_footing: bool | None = None
 
     def __call__(self, dataset: Any, combinations: list[str], *rest: Any, **named: Any) -> Any:
         self.rows += len(combinations)
+        self.equal_footing = named.get("equal_footing")
         return self.run(dataset, combinations, *rest, **named)
 
 
@@ -232,6 +234,7 @@ def test_measured_again_it_is_identical(
     monkeypatch.setattr(aerocues, "run", counted)
     assert main([*words, "--verify"]) == 0
     assert counted.rows == 1
+    assert counted.equal_footing is False  # thresholds as they were measured
 
     data, work, database = (tmp_path / place for place in PLACES)
     study = Study(read_plan(tmp_path / "tiny.toml"), data, work, database)
