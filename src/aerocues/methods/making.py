@@ -17,6 +17,7 @@ from aerocues.methods.matchers import NormRow
 from aerocues.methods.opencv import (
     BruteForceMatcher,
     FlannMatcher,
+    Latch,
     LevelDescriptor,
     OpenCVDescriptor,
     OpenCVDetector,
@@ -62,6 +63,8 @@ OWN_DESCRIPTORS: Mapping[str, Callable[[DescriptorRow], DescriptorStage]] = {
     "ROOTSIFT": RootSift,
 }
 """What aerocues makes of OpenCV's descriptors."""
+MENDED_DESCRIPTORS: Mapping[str, Callable[[DescriptorRow], DescriptorStage]] = {"LATCH": Latch}
+"""Descriptors of OpenCV by factory that need more than to be called."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +171,8 @@ def make_descriptor(methods: Methods, name: str, detector: str = "") -> Descript
     if row.origin == AEROCUES:
         return OWN_DESCRIPTORS[row.name](row)
     if row.origin == OPENCV:
-        return (LevelDescriptor if row.parameters.get(EXACT_POSITIONS) else OpenCVDescriptor)(row)
+        usual = LevelDescriptor if row.parameters.get(EXACT_POSITIONS) else OpenCVDescriptor
+        return MENDED_DESCRIPTORS.get(row.factory, usual)(row)
     return ArrayDescriptor(_plugin(row.factory, dict(row.parameters)), row.dtype)
 
 

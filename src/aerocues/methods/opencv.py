@@ -29,6 +29,8 @@ from aerocues.methods.positions import (
     Size,
 )
 
+HALF_PATCH = 24
+"""Pixels from a keypoint to the farthest centre of what LATCH compares."""
 SEARCH_PARAMETERS = ("checks", "eps", "sorted", "explore_all_trees")
 
 
@@ -98,6 +100,28 @@ class RootSift(OpenCVDescriptor):
             return native, None
         whole = np.maximum(descriptors.sum(axis=1, keepdims=True), np.finfo(np.float32).tiny)
         return native, np.sqrt(descriptors / whole)
+
+
+class Latch(OpenCVDescriptor):
+    """LATCH, kept from reading below the image.
+
+    Of keypoints in the lowest row that it takes, it reads memory behind the last row, so that their
+    descriptors differ from call to call. One more row, mirrored as its blur mirrors it, changes
+    nothing else.
+    """
+
+    def __init__(self, row: DescriptorRow) -> None:
+        super().__init__(row)
+        self._border = HALF_PATCH + int(row.parameters.get("half_ssd_size", 3))
+
+    def prepare(self, keypoints: Keypoints, image: NDArray[np.uint8]) -> Any:
+        lowest = image.shape[0] - self._border
+        inside = np.flatnonzero(np.rint(keypoints.xy[:, 1]) < lowest)
+        return super().prepare(keypoints.take(inside), image)
+
+    def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
+        taller = cv2.copyMakeBorder(image, 0, 1, 0, 0, cv2.BORDER_REFLECT_101)
+        return super().call(np.asarray(taller, np.uint8), prepared)
 
 
 class LevelDescriptor(OpenCVDescriptor):
