@@ -31,6 +31,8 @@ from aerocues.methods.positions import (
 
 HALF_PATCH = 24
 """Pixels from a keypoint to the farthest centre of what LATCH compares."""
+ROWS_BELOW = 2
+"""One that LATCH may read, and one behind it, where it reads a pixel too far to the right, too."""
 SEARCH_PARAMETERS = ("checks", "eps", "sorted", "explore_all_trees")
 
 
@@ -105,9 +107,9 @@ class RootSift(OpenCVDescriptor):
 class Latch(OpenCVDescriptor):
     """LATCH, kept from reading below the image.
 
-    Of keypoints in the lowest row that it takes, it reads memory behind the last row, so that their
-    descriptors differ from call to call. One more row, mirrored as its blur mirrors it, changes
-    nothing else.
+    It rounds 534.5 down to ask whether a keypoint is far enough from the border, and up to describe
+    it. Then it reads one row too low: memory whose content differs from call to call. More rows,
+    mirrored as its blur mirrors them, change nothing else.
     """
 
     def __init__(self, row: DescriptorRow) -> None:
@@ -120,7 +122,7 @@ class Latch(OpenCVDescriptor):
         return super().prepare(keypoints.take(inside), image)
 
     def call(self, image: NDArray[np.uint8], prepared: Any) -> Any:
-        taller = cv2.copyMakeBorder(image, 0, 1, 0, 0, cv2.BORDER_REFLECT_101)
+        taller = cv2.copyMakeBorder(image, 0, ROWS_BELOW, 0, 0, cv2.BORDER_REFLECT_101)
         return super().call(np.asarray(taller, np.uint8), prepared)
 
 

@@ -183,8 +183,7 @@ def add_part(study: str | Path, name: str, results: str | Path, facts: Mapping[s
     told = {**without_places(store.run()), FACTS: dict(facts)}
     planned, models = store.planned(), store.reconstructions()
     rows = store.rows().join(planned.select("row_key"), on="row_key", how="semi")
-    rows = with_cpu_times(rows)
-    content = folder_content(told, planned, rows, models if len(models) else None)
+    content = folder_content(told, planned, with_cpu_times(rows), models if len(models) else None)
     try:
         for file in content:
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
