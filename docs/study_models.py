@@ -88,7 +88,8 @@ class Built:
         return (
             f"`{self.part}`: {better} of {count(number, 'combination')} with a model have a better "
             f"one than COLMAP's default; what the pairs choose of them, `{self.choice}`, has place "
-            f"{place}, with {self.share(self.choice):.0%} of the quality of the best.{self._refined()}"
+            f"{place}, with {self.share(self.choice):.0%} of the quality of the best."
+            f"{self._refined()}"
         )
 
     def _refined(self) -> str:
